@@ -1,0 +1,10 @@
+//! Particles, kernels, neighbours and corrected gradients of smoothed particle hydrodynamics, in two and three
+//! dimensions.
+//!
+//! This crate knows space, particles and sums over neighbours. It does not know materials, Riemann problems or files.
+
+pub mod dimension;
+pub mod particles;
+
+pub use dimension::{Components, Dim2, Dim3, Dimension, Vector};
+pub use particles::{Constraint, Particle, Particles};

@@ -1,0 +1,1 @@
+//! Equations of state, strength, failure and analytic shock solutions of solids at one point of matter

@@ -1,0 +1,3 @@
+//! How to run things: validation, benches, documentation, tidiness.
+
+fn main() {}

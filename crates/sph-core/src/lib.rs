@@ -4,7 +4,10 @@
 //! This crate knows space, particles and sums over neighbours. It does not know materials, Riemann problems or files.
 
 pub mod dimension;
+pub mod domain;
+pub mod lanes;
 pub mod particles;
 
 pub use dimension::{Components, Dim2, Dim3, Dimension, Vector};
+pub use domain::Domain;
 pub use particles::{Constraint, Particle, Particles};

@@ -235,7 +235,7 @@ mod tests {
         }
     }
 
-    fn selection_keeps_every_field<D: Dimension>() {
+    fn selection_keeps_every_field<D: Dimension<Tensor<f64>: PartialEq>>() {
         let mut particles = Particles::<D>::default();
         (0..10).for_each(|id| particles.push(particle(id)));
         particles.retain(|i| i % 3 == 0);

@@ -1,0 +1,147 @@
+//! Eight lanes in two AVX2 registers.
+//!
+//! Invariant of every `unsafe` block here: an [`Avx2`] exists only inside [`super::dispatch_with`], which has checked
+//! that the machine has AVX2 and fused multiply-add.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+use super::{LANES, Lanes, Line, Real};
+
+/// Eight numbers in two registers.
+#[derive(Clone, Copy, Debug)]
+pub struct Avx2(__m256d, __m256d);
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for Avx2 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the invariant of this module.
+                unsafe { Self($intrinsic(self.0, other.0), $intrinsic(self.1, other.1)) }
+            }
+        }
+    };
+}
+operator!(Add, add, _mm256_add_pd);
+operator!(Sub, sub, _mm256_sub_pd);
+operator!(Mul, mul, _mm256_mul_pd);
+operator!(Div, div, _mm256_div_pd);
+
+impl Neg for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_xor_pd(self.0, sign), _mm256_xor_pd(self.1, sign))
+        }
+    }
+}
+
+impl AddAssign for Avx2 {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Real for Avx2 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe { Self(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe { Self(_mm256_fmadd_pd(self.0, b.0, c.0), _mm256_fmadd_pd(self.1, b.1, c.1)) }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe { Self(_mm256_max_pd(self.0, other.0), _mm256_max_pd(self.1, other.1)) }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe { Self(_mm256_min_pd(self.0, other.0), _mm256_min_pd(self.1, other.1)) }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_andnot_pd(sign, self.0), _mm256_andnot_pd(sign, self.1))
+        }
+    }
+    #[inline(always)]
+    fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe {
+            Self(
+                _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0)),
+                _mm256_blendv_pd(no.1, yes.1, _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1)),
+            )
+        }
+    }
+}
+
+impl Lanes for Avx2 {
+    #[inline(always)]
+    fn load(source: &[f64; LANES]) -> Self {
+        // SAFETY: the invariant of this module; the source has eight numbers.
+        unsafe { Self(_mm256_loadu_pd(source.as_ptr()), _mm256_loadu_pd(source.as_ptr().add(4))) }
+    }
+    #[inline(always)]
+    fn store(self, target: &mut [f64; LANES]) {
+        // SAFETY: the invariant of this module; the target has eight numbers.
+        unsafe {
+            _mm256_storeu_pd(target.as_mut_ptr(), self.0);
+            _mm256_storeu_pd(target.as_mut_ptr().add(4), self.1);
+        }
+    }
+    #[inline(always)]
+    unsafe fn load_records(
+        lines: &[Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) -> [Self; LANES] {
+        // SAFETY: the invariant of this module; the caller promises that the records exist.
+        unsafe {
+            let quarter = |l: usize, half: usize| {
+                let at = indices[l] as usize * stride + line;
+                debug_assert!(at < lines.len());
+                _mm256_load_pd(lines.as_ptr().add(at).cast::<f64>().add(4 * half))
+            };
+            let block =
+                |rows: usize, half: usize| transpose(std::array::from_fn(|l| quarter(4 * rows + l, half)));
+            let (a, b, c, d) = (block(0, 0), block(1, 0), block(0, 1), block(1, 1));
+            std::array::from_fn(|k| if k < 4 { Self(a[k], b[k]) } else { Self(c[k - 4], d[k - 4]) })
+        }
+    }
+}
+
+/// Rows to columns of a 4 × 4 block.
+#[inline(always)]
+unsafe fn transpose(r: [__m256d; 4]) -> [__m256d; 4] {
+    // SAFETY: the invariant of this module.
+    unsafe {
+        let (e0, o0) = (_mm256_unpacklo_pd(r[0], r[1]), _mm256_unpackhi_pd(r[0], r[1]));
+        let (e1, o1) = (_mm256_unpacklo_pd(r[2], r[3]), _mm256_unpackhi_pd(r[2], r[3]));
+        [
+            _mm256_permute2f128_pd::<0x20>(e0, e1),
+            _mm256_permute2f128_pd::<0x20>(o0, o1),
+            _mm256_permute2f128_pd::<0x31>(e0, e1),
+            _mm256_permute2f128_pd::<0x31>(o0, o1),
+        ]
+    }
+}

@@ -1,0 +1,165 @@
+//! Eight lanes in one AVX-512 register.
+//!
+//! Invariant of every `unsafe` block here: an [`Avx512`] exists only inside [`super::dispatch_with`], which has checked
+//! that the machine has AVX-512 F, DQ and VL. All values are created by functions that only a
+//! [`super::LaneKernel`] calls.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+use super::{LANES, Lanes, Line, Real};
+
+/// Eight numbers in one register.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Avx512(__m512d);
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for Avx512 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the invariant of this module.
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    };
+}
+operator!(Add, add, _mm512_add_pd);
+operator!(Sub, sub, _mm512_sub_pd);
+operator!(Mul, mul, _mm512_mul_pd);
+operator!(Div, div, _mm512_div_pd);
+
+impl Neg for Avx512 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
+    }
+}
+
+impl AddAssign for Avx512 {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Real for Avx512 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_abs_pd(self.0) })
+    }
+    #[inline(always)]
+    fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe {
+            let mask = _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0);
+            _mm512_mask_blend_pd(mask, no.0, yes.0)
+        })
+    }
+}
+
+impl Lanes for Avx512 {
+    #[inline(always)]
+    fn load(source: &[f64; LANES]) -> Self {
+        // SAFETY: the invariant of this module; the source has eight numbers.
+        Self(unsafe { _mm512_loadu_pd(source.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, target: &mut [f64; LANES]) {
+        // SAFETY: the invariant of this module; the target has eight numbers.
+        unsafe { _mm512_storeu_pd(target.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    unsafe fn load_records(
+        lines: &[Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) -> [Self; LANES] {
+        // SAFETY: the invariant of this module; the caller promises that the records exist.
+        unsafe {
+            let row = |l: usize| {
+                let at = indices[l] as usize * stride + line;
+                debug_assert!(at < lines.len());
+                _mm512_load_pd(lines.as_ptr().add(at).cast())
+            };
+            transpose(std::array::from_fn(row)).map(Self)
+        }
+    }
+    #[inline(always)]
+    fn prefetch(lines: &[Line], stride: usize, indices: &[u32; LANES]) {
+        for &i in indices {
+            let at = i as usize * stride;
+            debug_assert!(at + stride <= lines.len());
+            for line in 0..stride {
+                // SAFETY: a prefetch never faults.
+                unsafe {
+                    _mm_prefetch::<_MM_HINT_T0>(lines.as_ptr().wrapping_add(at + line).cast());
+                }
+            }
+        }
+    }
+}
+
+/// Rows to columns of an 8 × 8 block: pairs of numbers, then pairs of quarters, then halves.
+#[inline(always)]
+unsafe fn transpose(r: [__m512d; LANES]) -> [__m512d; LANES] {
+    // SAFETY: the invariant of this module.
+    unsafe {
+        // a[k] holds numbers (0, 2, 4, 6) + k % 2 of rows 2 (k / 2) and 2 (k / 2) + 1, interleaved.
+        let a: [__m512d; LANES] = std::array::from_fn(|k| {
+            let (p, q) = (r[k & !1], r[k | 1]);
+            if k % 2 == 0 { _mm512_unpacklo_pd(p, q) } else { _mm512_unpackhi_pd(p, q) }
+        });
+        // Quarters of four rows: b[h][k] has numbers k and k + 4 of rows 4 h .. 4 h + 4.
+        let half = |h: usize| -> [__m512d; 4] {
+            let [e0, o0, e1, o1] = [a[4 * h], a[4 * h + 1], a[4 * h + 2], a[4 * h + 3]];
+            [
+                _mm512_shuffle_f64x2::<0b10_00_10_00>(e0, e1),
+                _mm512_shuffle_f64x2::<0b10_00_10_00>(o0, o1),
+                _mm512_shuffle_f64x2::<0b11_01_11_01>(e0, e1),
+                _mm512_shuffle_f64x2::<0b11_01_11_01>(o0, o1),
+            ]
+        };
+        // shuffle(e0, e1, 10_00_10_00) = quarters (e0.0, e0.2, e1.0, e1.2): numbers 0, 4 of rows 0-1, then of rows 2-3.
+        let (low, high) = (half(0), half(1));
+        std::array::from_fn(|k| {
+            let (p, q) = (low[k % 4], high[k % 4]);
+            if k < 4 {
+                _mm512_shuffle_f64x2::<0b10_00_10_00>(p, q)
+            } else {
+                _mm512_shuffle_f64x2::<0b11_01_11_01>(p, q)
+            }
+        })
+    }
+}

@@ -1,0 +1,277 @@
+//! Eight numbers at a time.
+//!
+//! The pair loops work on eight consecutive particles at once, one per lane. A sum over neighbours is then eight
+//! independent sums, each in the order of its own list: no horizontal sums, and the same bits whatever the width of the
+//! registers. [`Lanes`] is implemented for AVX-512 (one register), AVX2 with fused multiply-add (two registers) and
+//! plain arrays; [`dispatch`] picks the widest that the machine has, at run time.
+//!
+//! **Same bits everywhere.** Every implementation performs the same IEEE operations in the same order: fused
+//! multiply-add only where [`Real::mul_add`] is written, correctly rounded division and square root, no approximate
+//! reciprocals. `max` and `min` return the second operand if either is NaN, as the x86 instructions do.
+//!
+//! [`Real`] is what formulas need of a number; `f64` has it too, so a kernel function is written once for both.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod plain;
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+// The lane types stay private: only `dispatch_with` can make a kernel run with them, after it has checked the machine.
+#[cfg(target_arch = "x86_64")]
+use avx2::Avx2;
+#[cfg(target_arch = "x86_64")]
+use avx512::Avx512;
+use plain::Plain;
+
+/// Number of lanes, and the number of particles in a block.
+pub const LANES: usize = 8;
+
+/// One line of a record: eight numbers in 64 bytes, one cache line.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct Line(pub [f64; LANES]);
+
+/// What formulas need of a number.
+pub trait Real:
+    crate::dimension::Value
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+{
+    /// The same number in every lane.
+    fn splat(value: f64) -> Self;
+    /// `self * b + c`, rounded once.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// Square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// The larger; `other` if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// The smaller; `other` if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// `yes` where `self < limit`, else `no` (also for NaN).
+    fn select_less(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// Zero.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::splat(0.0)
+    }
+    /// One.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::splat(1.0)
+    }
+}
+
+/// Eight numbers in registers.
+pub trait Lanes: Real {
+    /// Eight consecutive numbers.
+    fn load(source: &[f64; LANES]) -> Self;
+    /// Writes the lanes to memory.
+    fn store(self, target: &mut [f64; LANES]);
+    /// Line `line` of eight records of `stride` lines each, transposed: element `k` of the result holds number `k` of
+    /// every record.
+    ///
+    /// # Panics
+    /// In debug builds, if a record is outside `lines`.
+    ///
+    /// # Safety
+    /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbour list guarantees it.
+    unsafe fn load_records(
+        lines: &[Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) -> [Self; LANES];
+    /// Number `indices[l]` of a column, for every lane.
+    #[inline(always)]
+    fn gather(column: &[f64], indices: &[u32; LANES]) -> Self {
+        Self::load(&std::array::from_fn(|l| column[indices[l] as usize]))
+    }
+    /// The lanes as an array.
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut array = [0.0; LANES];
+        self.store(&mut array);
+        array
+    }
+    /// Asks for the lines of eight records ahead of their use.
+    #[inline(always)]
+    fn prefetch(_lines: &[Line], _stride: usize, _indices: &[u32; LANES]) {}
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        f64::mul_add(self, b, c)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
+        if self < limit { yes } else { no }
+    }
+}
+
+/// A computation written for any lanes. Mark `run` with `#[inline(always)]`: it is compiled into functions that have
+/// the instructions of each set enabled.
+pub trait LaneKernel {
+    /// The computation with lanes `L`.
+    fn run<L: Lanes>(self);
+}
+
+/// Sets of instructions, from plain to wide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum InstructionSet {
+    /// Arrays of eight numbers, left to the compiler.
+    Plain,
+    /// AVX2 with fused multiply-add: two registers of four numbers.
+    Avx2,
+    /// AVX-512 (F, DQ, VL): one register of eight numbers.
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The widest set that this machine has. The environment variable `SPH_LANES` (`plain`, `avx2`, `avx512`) asks for
+    /// a narrower one, for comparison; a wider one than the machine has is never taken.
+    pub fn detect() -> Self {
+        static DETECTED: std::sync::OnceLock<InstructionSet> = std::sync::OnceLock::new();
+        *DETECTED.get_or_init(|| {
+            let wanted = match std::env::var("SPH_LANES").as_deref() {
+                Ok("plain") => Self::Plain,
+                Ok("avx2") => Self::Avx2,
+                _ => Self::Avx512,
+            };
+            Self::available().into_iter().rfind(|set| *set <= wanted).unwrap_or(Self::Plain)
+        })
+    }
+
+    /// All sets that this machine has, from plain to wide.
+    pub fn available() -> Vec<Self> {
+        #[allow(unused_mut)]
+        let mut list = vec![Self::Plain];
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                list.push(Self::Avx2);
+            }
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+            {
+                list.push(Self::Avx512);
+            }
+        }
+        list
+    }
+}
+
+/// Runs a computation with the widest lanes of this machine.
+#[inline]
+pub fn dispatch<K: LaneKernel>(kernel: K) {
+    dispatch_with(InstructionSet::detect(), kernel);
+}
+
+/// Runs a computation with the given set of instructions.
+///
+/// # Panics
+/// If the machine does not have the set.
+#[inline]
+pub fn dispatch_with<K: LaneKernel>(set: InstructionSet, kernel: K) {
+    match set {
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => {
+            assert!(is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq"));
+            // SAFETY: the machine has the instructions; the line above has just checked it.
+            unsafe { run_avx512(kernel) }
+        }
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 => {
+            assert!(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"));
+            // SAFETY: the machine has the instructions; the line above has just checked it.
+            unsafe { run_avx2(kernel) }
+        }
+        _ => kernel.run::<Plain>(),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+fn run_avx512<K: LaneKernel>(kernel: K) {
+    kernel.run::<Avx512>();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn run_avx2<K: LaneKernel>(kernel: K) {
+    kernel.run::<Avx2>();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Exercises every operation and keeps the bits.
+    struct Exercise<'a>(&'a [Line], &'a mut Vec<u64>);
+
+    impl LaneKernel for Exercise<'_> {
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            let a = L::load(&[1.0, -2.5, 3.0e200, f64::NAN, 0.0, -0.0, 1e-310, 7.0]);
+            let b = L::load(&[0.3, 2.5, 1.0e-200, 1.0, -0.0, 0.0, 3.0, f64::NAN]);
+            // SAFETY: the records 0..8 of two lines each exist.
+            let records = unsafe { L::load_records(self.0, 2, 1, &[7, 0, 3, 3, 1, 2, 6, 5]) };
+            let one = L::one();
+            let all = [a + b, a - b, a * b, a / b, -a, a.mul_add(b, one), a.abs().sqrt()];
+            let picks = [a.max(b), b.max(a), a.min(b), b.min(a), a.select_less(b, a, b)];
+            for lanes in all.iter().chain(&picks).chain(&records) {
+                // A NaN's sign and payload are nobody's concern.
+                self.1.extend(lanes.to_array().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
+            }
+        }
+    }
+
+    #[test]
+    fn every_set_of_instructions_gives_the_same_bits() {
+        let lines: Vec<Line> = (0..16).map(|i| Line(std::array::from_fn(|k| (100 * i + k) as f64))).collect();
+        let results: Vec<Vec<u64>> = InstructionSet::available()
+            .into_iter()
+            .map(|set| {
+                let mut bits = Vec::new();
+                dispatch_with(set, Exercise(&lines, &mut bits));
+                bits
+            })
+            .collect();
+        assert_eq!(results[0].len(), 20 * LANES);
+        // Element k of record r, line 1, is 100 (2 r + 1) + k.
+        assert_eq!(f64::from_bits(results[0][12 * LANES + 8 * 2]), 1502.0);
+        for result in &results[1..] {
+            assert_eq!(result, &results[0]);
+        }
+    }
+}

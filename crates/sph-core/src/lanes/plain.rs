@@ -1,0 +1,101 @@
+//! Eight lanes as an array: the reference, and what machines without AVX2 run.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+use super::{LANES, Lanes, Line, Real};
+
+/// Eight numbers in an array.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Plain([f64; LANES]);
+
+impl Plain {
+    #[inline(always)]
+    fn map2(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(std::array::from_fn(|l| f(self.0[l], other.0[l])))
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl $trait for Plain {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.map2(other, |a, b| $trait::$method(a, b))
+            }
+        }
+    };
+}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+impl Neg for Plain {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|a| -a))
+    }
+}
+
+impl AddAssign for Plain {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Real for Plain {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; LANES])
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        Self(std::array::from_fn(|l| f64::mul_add(self.0[l], b.0[l], c.0[l])))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.map2(other, Real::max)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.map2(other, Real::min)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+    #[inline(always)]
+    fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
+        Self(std::array::from_fn(|l| if self.0[l] < limit.0[l] { yes.0[l] } else { no.0[l] }))
+    }
+}
+
+impl Lanes for Plain {
+    #[inline(always)]
+    fn load(source: &[f64; LANES]) -> Self {
+        Self(*source)
+    }
+    #[inline(always)]
+    fn store(self, target: &mut [f64; LANES]) {
+        *target = self.0;
+    }
+    #[inline(always)]
+    unsafe fn load_records(
+        lines: &[Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) -> [Self; LANES] {
+        let records: [&[f64; LANES]; LANES] =
+            std::array::from_fn(|l| &lines[indices[l] as usize * stride + line].0);
+        std::array::from_fn(|k| Self(std::array::from_fn(|l| records[l][k])))
+    }
+}

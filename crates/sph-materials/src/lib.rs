@@ -1,1 +1,47 @@
-//! Equations of state, strength, failure and analytic shock solutions of solids at one point of matter
+//! What one point of solid matter does: pressure, strength, failure, sound speeds, and the shock waves that follow
+//! from them in closed form.
+//!
+//! Everything here is scalar or a small array; nothing knows of particles, grids or files.
+//!
+//! # Conventions
+//!
+//! SI units. Stress is positive in tension, pressure positive in compression: \\( \sigma = -P I + S \\).
+//! The specific internal energy \\( e \\) is counted from the reference state \\( \rho = \rho_0,\; P = 0 \\) and holds all
+//! of the internal energy, that of elastic shear included.
+//!
+//! # Rooms
+//!
+//! | module | question it answers |
+//! |---|---|
+//! | [`material`] | the whole material: reference density and one choice of each model |
+//! | [`eos`] | \\( P(\rho, e) \\) and the exact sound speed of each equation of state |
+//! | [`strength`] | elasticity, von Mises yield, return to the yield surface |
+//! | [`failure`] | what happens when the tensile strength is passed |
+//! | [`sound`] | which sound speed a contact between particles uses |
+//! | [`library`] | named materials, each number with its unit and source |
+//!
+//! # Example
+//!
+//! ```
+//! use sph_materials::library;
+//!
+//! let copper = library::material("porous-copper")?;
+//! let pressure = copper.pressure(9_000.0, 0.0);
+//! assert!(pressure > 0.0 && copper.longitudinal_sound_speed(9_000.0, 0.0) > 4_000.0);
+//! # Ok::<(), sph_materials::LibraryError>(())
+//! ```
+
+pub mod eos;
+pub mod error;
+pub mod failure;
+pub mod library;
+pub mod material;
+pub mod sound;
+pub mod strength;
+
+pub use eos::EquationOfState;
+pub use error::{LibraryError, MaterialError};
+pub use failure::{Failure, TensileState};
+pub use material::Material;
+pub use sound::SoundSpeedModel;
+pub use strength::Strength;

@@ -1,0 +1,141 @@
+//! Equations of state \\( P(\rho, e) \\) of a solid: one model a file, behind one closed enum.
+//!
+//! Every model here is linear in the specific internal energy at fixed density,
+//! \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), with \\( a = \partial P / \partial e|_\rho \\); the shock solutions of
+//! [`crate::hugoniot`] rest on that.
+//!
+//! Two sound speeds belong to each model:
+//!
+//! * thermodynamic, exact: \\( c_b^2 = \partial P/\partial\rho|_e + (P/\rho^2)\, \partial P/\partial e|_\rho \\);
+//! * quasi-acoustic: \\( c_b^2 = B/\rho \\) with the constant \\( B \\) of the undisturbed material (Rublev & Murzov,
+//!   arXiv 2410.14646, text below paper eq. (8)).
+//!
+//! The square of the thermodynamic speed may become negative: in strong expansion, where the model leaves the
+//! domain in which matter is stable. It is returned as it is; [`crate::Material::bulk_sound_speed`] decides what to do.
+//!
+//! # Adding a model
+//!
+//! One file with the four functions and the documentation that the others have, one variant, one arm in each `match`
+//! below, one row in the property tests (`tests/prop_eos.rs`).
+
+mod linear;
+mod linear_gamma;
+mod logarithmic;
+mod mie_gruneisen;
+
+pub use linear::Linear;
+pub use linear_gamma::LinearGamma;
+pub use logarithmic::Logarithmic;
+pub use mie_gruneisen::MieGruneisen;
+
+use serde::{Deserialize, Serialize};
+
+/// One of the equations of state that the program knows.
+///
+/// `rho0` is the reference density [kg/m³] of the material, `rho` the density [kg/m³], `e` the specific internal
+/// energy [J/kg]. Densities must be positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum EquationOfState {
+    /// Mie-Grüneisen with the solid's linear shock Hugoniot as reference curve.
+    MieGruneisen(MieGruneisen),
+    /// Pressure proportional to the logarithm of density; no thermal part.
+    Logarithmic(Logarithmic),
+    /// Pressure proportional to the excess density; no thermal part.
+    Linear(Linear),
+    /// Linear in density with an ideal-gas-like thermal part.
+    LinearGamma(LinearGamma),
+}
+
+/// Calls the same function of whichever model is there.
+macro_rules! each_model {
+    ($self:ident, $model:ident => $call:expr) => {
+        match $self {
+            EquationOfState::MieGruneisen($model) => $call,
+            EquationOfState::Logarithmic($model) => $call,
+            EquationOfState::Linear($model) => $call,
+            EquationOfState::LinearGamma($model) => $call,
+        }
+    };
+}
+
+impl EquationOfState {
+    /// Pressure [Pa], positive in compression.
+    #[inline]
+    pub fn pressure(&self, rho0: f64, rho: f64, e: f64) -> f64 {
+        each_model!(self, model => model.pressure(rho0, rho, e))
+    }
+
+    /// \\( \partial P/\partial e|_\rho \\) [kg/m³]: a function of density alone in every model here.
+    #[inline]
+    pub fn pressure_energy_slope(&self, rho: f64) -> f64 {
+        each_model!(self, model => model.pressure_energy_slope(rho))
+    }
+
+    /// Square of the thermodynamic bulk sound speed [m²/s²]; negative where the model is unstable.
+    #[inline]
+    pub fn thermodynamic_sound_speed_squared(&self, rho0: f64, rho: f64, e: f64) -> f64 {
+        each_model!(self, model => model.thermodynamic_sound_speed_squared(rho0, rho, e))
+    }
+
+    /// Square of the quasi-acoustic bulk sound speed [m²/s²], \\( B/\rho \\).
+    #[inline]
+    pub fn quasi_acoustic_sound_speed_squared(&self, rho0: f64, rho: f64) -> f64 {
+        self.reference_bulk_modulus(rho0) / rho
+    }
+
+    /// Bulk modulus \\( B \\) of the reference state [Pa], \\( \rho_0 c^2 \\) at \\( \rho_0 \\), e = 0.
+    #[inline]
+    pub fn reference_bulk_modulus(&self, rho0: f64) -> f64 {
+        each_model!(self, model => model.reference_bulk_modulus(rho0))
+    }
+
+    /// Density [kg/m³] below which the formula holds; infinite where it has no singular point.
+    ///
+    /// [`EquationOfState::pressure`] does not check it: past a singular density the formula gives finite, meaningless
+    /// numbers.
+    pub fn density_limit(&self, rho0: f64) -> f64 {
+        match self {
+            Self::MieGruneisen(model) => model.density_limit(rho0),
+            Self::Logarithmic(_) | Self::Linear(_) | Self::LinearGamma(_) => f64::INFINITY,
+        }
+    }
+
+    /// Parameters by name, value and the condition that each must meet beyond being finite.
+    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        each_model!(self, model => model.parameters().to_vec())
+    }
+}
+
+/// A number of a model as the check of a material sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parameter {
+    /// Name of the field.
+    pub name: &'static str,
+    /// Value in SI units.
+    pub value: f64,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Least value, and whether that value itself is allowed.
+    pub least: f64,
+    /// Whether `least` itself is allowed.
+    pub least_allowed: bool,
+}
+
+impl Parameter {
+    /// A number that must be greater than `least`.
+    pub const fn above(name: &'static str, value: f64, unit: &'static str, least: f64) -> Self {
+        Self { name, value, unit, least, least_allowed: false }
+    }
+
+    /// A number that must not be less than `least`.
+    pub const fn at_least(name: &'static str, value: f64, unit: &'static str, least: f64) -> Self {
+        Self { name, value, unit, least, least_allowed: true }
+    }
+
+    /// Whether the number is finite and meets its bound; not-a-number fails.
+    pub fn is_good(&self) -> bool {
+        self.value.is_finite()
+            && (self.value > self.least || (self.least_allowed && self.value == self.least))
+    }
+}

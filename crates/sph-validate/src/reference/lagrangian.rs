@@ -1,0 +1,333 @@
+//! One-dimensional Lagrangian solution of an elastic-plastic solid on a staggered mesh, planar and cylindrical.
+//!
+//! Nodes carry r and u, zones carry ρ, e and the deviator (S_rr, S_θθ, S_zz). One step of the scheme, leapfrog in its
+//! synchronous form:
+//!
+//! $$ u^{n+1/2} = u^n + \tfrac12 \tau f^n / m, \quad r^{n+1} = r^n + \tau u^{n+1/2}, \quad
+//!    u^{n+1} = u^{n+1/2} + \tfrac12 \tau f^{n+1} / m. $$
+//!
+//! The strain rates of a zone of area A (per unit depth, or per unit depth and radian) at the half step are
+//! D_rr = Δu/Δr and D_θθ = u_mid/r_mid (0 in the plane); their sum is d ln A/dt exactly. Nodal forces follow from
+//! virtual work, δW = (σ_rr δD_rr + σ_θθ δD_θθ) A, so that the scheme conserves momentum (planar) and its energy
+//! error is that of the time step alone. dS/dt = 2G (D - tr D/3) with von Mises return; de = σ : D dt/ρ with the mean
+//! stress of the step. Second order in smooth flow; shocks need the artificial viscosity, which is zero by default.
+//!
+//! Validity: no rotation (one dimension), constant shear modulus, surfaces free of traction or fixed.
+//!
+//! Source: M. L. Wilkins, Meth. Comput. Phys. 3 (1964) 211; A. A. Samarskii and Yu. P. Popov, Difference methods for
+//! gas dynamics (1992).
+
+/// Pressure P(ρ, e) [Pa] from density [kg/m³] and specific internal energy [J/kg].
+pub type Pressure<'a> = &'a (dyn Fn(f64, f64) -> f64 + Sync);
+
+/// What the solver needs of a material.
+#[derive(Clone, Copy)]
+pub struct Solid<'a> {
+    /// Equation of state.
+    pub pressure: Pressure<'a>,
+    /// Shear modulus G [Pa].
+    pub shear_modulus: f64,
+    /// Yield strength Y [Pa]; infinite for an elastic solid.
+    pub yield_strength: f64,
+    /// Upper estimate of the longitudinal sound speed [m/s]: sets the time step.
+    pub sound_speed: f64,
+}
+
+/// Shape of the space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Planes perpendicular to the coordinate; uniaxial strain.
+    Planar,
+    /// Cylinders around the axis r = 0; plane strain along the axis.
+    Cylindrical,
+}
+
+/// Condition at both ends of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// Free of traction.
+    Free,
+    /// At rest.
+    Fixed,
+}
+
+/// Artificial viscosity of compressed zones, q = ρ (c_q Δu² + c_l c |Δu|), for problems with shocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Viscosity {
+    /// Quadratic coefficient c_q [-]; 2 is usual.
+    pub quadratic: f64,
+    /// Linear coefficient c_l [-]; 0.1 to 0.5 is usual.
+    pub linear: f64,
+}
+
+/// Choices of the scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// Shape of the space.
+    pub symmetry: Symmetry,
+    /// Condition at both ends.
+    pub ends: Ends,
+    /// Courant number [-], below 1.
+    pub cfl: f64,
+    /// Artificial viscosity.
+    pub viscosity: Viscosity,
+}
+
+/// Initial state of a zone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// Density ρ [kg/m³].
+    pub density: f64,
+    /// Specific internal energy e [J/kg].
+    pub energy: f64,
+    /// Deviator (S_rr, S_θθ, S_zz) [Pa]; S_yy in place of S_θθ in the plane.
+    pub deviator: [f64; 3],
+}
+
+/// The mesh and its state at one time.
+#[derive(Clone)]
+pub struct Mesh<'a> {
+    solid: Solid<'a>,
+    scheme: Scheme,
+    time: f64,
+    radius: Vec<f64>,
+    velocity: Vec<f64>,
+    node_mass: Vec<f64>,
+    force: Vec<f64>,
+    zone_mass: Vec<f64>,
+    zones: Vec<Zone>,
+    viscous_pressure: Vec<f64>,
+}
+
+impl<'a> Mesh<'a> {
+    /// A mesh of `zones` equal zones between two coordinates `ends` [m], with the state of each zone from its middle
+    /// and the velocity [m/s] of each node from its place.
+    pub fn new(
+        solid: Solid<'a>,
+        scheme: Scheme,
+        ends: [f64; 2],
+        zones: usize,
+        state: impl Fn(f64) -> Zone,
+        velocity: impl Fn(f64) -> f64,
+    ) -> Self {
+        let width = (ends[1] - ends[0]) / zones as f64;
+        let radius: Vec<f64> = (0..=zones).map(|j| ends[0] + j as f64 * width).collect();
+        let initial: Vec<Zone> = (0..zones).map(|k| state(radius[k] + 0.5 * width)).collect();
+        let mut mesh = Self {
+            solid,
+            scheme,
+            time: 0.0,
+            velocity: radius.iter().map(|&r| velocity(r)).collect(),
+            node_mass: vec![0.0; zones + 1],
+            force: vec![0.0; zones + 1],
+            zone_mass: vec![0.0; zones],
+            viscous_pressure: vec![0.0; zones],
+            zones: initial,
+            radius,
+        };
+        mesh.lump_masses();
+        mesh.hold_ends();
+        mesh.compute_forces();
+        mesh
+    }
+
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Coordinates of the nodes [m].
+    pub fn radius(&self) -> &[f64] {
+        &self.radius
+    }
+
+    /// Velocities of the nodes [m/s].
+    pub fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    /// Middle of zone `k` [m].
+    pub fn middle(&self, k: usize) -> f64 {
+        0.5 * (self.radius[k] + self.radius[k + 1])
+    }
+
+    /// Stress σ_rr of zone `k`, without artificial viscosity [Pa].
+    pub fn radial_stress(&self, k: usize) -> f64 {
+        let zone = &self.zones[k];
+        zone.deviator[0] - (self.solid.pressure)(zone.density, zone.energy)
+    }
+
+    /// Mass-weighted mean of r² over the mesh [m²]: (r1² + r2²)/2 of each zone is exact for uniform density.
+    pub fn mean_square_radius(&self) -> f64 {
+        let square = |k: usize| 0.5 * (self.radius[k].powi(2) + self.radius[k + 1].powi(2));
+        let sum: f64 = (0..self.zones.len()).map(|k| self.zone_mass[k] * square(k)).sum();
+        sum / self.zone_mass.iter().sum::<f64>()
+    }
+
+    /// Kinetic and internal energy, per unit depth (and radian) [J/m].
+    pub fn energy(&self) -> f64 {
+        let kinetic: f64 = self.node_mass.iter().zip(&self.velocity).map(|(m, u)| 0.5 * m * u * u).sum();
+        let internal: f64 = self.zone_mass.iter().zip(&self.zones).map(|(m, zone)| m * zone.energy).sum();
+        kinetic + internal
+    }
+
+    /// Velocity at `place` [m/s], linear between the nodes; zero outside.
+    pub fn velocity_at(&self, place: f64) -> f64 {
+        let j = self.radius.partition_point(|&r| r <= place);
+        if j == 0 || j == self.radius.len() {
+            return 0.0;
+        }
+        let weight = (place - self.radius[j - 1]) / (self.radius[j] - self.radius[j - 1]);
+        self.velocity[j - 1] + weight * (self.velocity[j] - self.velocity[j - 1])
+    }
+
+    /// Advances to `end` [s].
+    pub fn run_until(&mut self, end: f64) {
+        while self.time < end {
+            let remaining = end - self.time;
+            // Equal last steps: a sliver of a step would only add round-off.
+            let steps = (remaining / self.time_step()).ceil().max(1.0);
+            self.step(remaining / steps);
+            if steps <= 1.0 {
+                self.time = end;
+            }
+        }
+    }
+
+    /// The longest stable step [s].
+    pub fn time_step(&self) -> f64 {
+        let narrowest = self.radius.windows(2).map(|r| r[1] - r[0]).fold(f64::INFINITY, f64::min);
+        self.scheme.cfl * narrowest / self.solid.sound_speed
+    }
+
+    /// Advances by `tau` [s].
+    pub fn step(&mut self, tau: f64) {
+        self.kick(0.5 * tau);
+        for (k, zone) in self.zones.iter_mut().enumerate() {
+            let (r, u) = (&self.radius[k..k + 2], &self.velocity[k..k + 2]);
+            let half = Rates::at_half_step(self.scheme.symmetry, r, u, tau);
+            self.viscous_pressure[k] = viscous_pressure(&self.scheme, &self.solid, zone.density, u);
+            *zone = advanced(zone, &self.solid, &half, self.viscous_pressure[k], tau);
+        }
+        for (r, u) in self.radius.iter_mut().zip(&self.velocity) {
+            *r += tau * u;
+        }
+        for (k, zone) in self.zones.iter_mut().enumerate() {
+            zone.density = self.zone_mass[k] / area(self.scheme.symmetry, &self.radius[k..k + 2]);
+        }
+        self.compute_forces();
+        self.kick(0.5 * tau);
+        self.time += tau;
+    }
+
+    fn kick(&mut self, tau: f64) {
+        for ((u, f), m) in self.velocity.iter_mut().zip(&self.force).zip(&self.node_mass) {
+            *u += tau * f / m;
+        }
+        self.hold_ends();
+    }
+
+    fn hold_ends(&mut self) {
+        if self.scheme.ends == Ends::Fixed {
+            let last = self.velocity.len() - 1;
+            self.velocity[0] = 0.0;
+            self.velocity[last] = 0.0;
+        }
+    }
+
+    /// Forces by virtual work: σ_rr pulls on both nodes with r_mid, σ_θθ pushes both inwards with half of the width.
+    fn compute_forces(&mut self) {
+        self.force.fill(0.0);
+        for (k, zone) in self.zones.iter().enumerate() {
+            let mean = -(self.solid.pressure)(zone.density, zone.energy) - self.viscous_pressure[k];
+            let radial = mean + zone.deviator[0];
+            let (lever, hoop) = match self.scheme.symmetry {
+                Symmetry::Planar => (1.0, 0.0),
+                Symmetry::Cylindrical => (
+                    0.5 * (self.radius[k] + self.radius[k + 1]),
+                    0.5 * (mean + zone.deviator[1]) * (self.radius[k + 1] - self.radius[k]),
+                ),
+            };
+            self.force[k] += radial * lever - hoop;
+            self.force[k + 1] -= radial * lever + hoop;
+        }
+    }
+
+    /// Row sums of the linear finite element's mass matrix: second order up to the surface.
+    fn lump_masses(&mut self) {
+        for k in 0..self.zones.len() {
+            let r = &self.radius[k..k + 2];
+            let density = self.zones[k].density;
+            let weights = match self.scheme.symmetry {
+                Symmetry::Planar => [0.5, 0.5],
+                Symmetry::Cylindrical => [(2.0 * r[0] + r[1]) / 6.0, (r[0] + 2.0 * r[1]) / 6.0],
+            };
+            self.zone_mass[k] = density * area(self.scheme.symmetry, r);
+            self.node_mass[k] += density * weights[0] * (r[1] - r[0]);
+            self.node_mass[k + 1] += density * weights[1] * (r[1] - r[0]);
+        }
+    }
+}
+
+/// Area of a zone per unit depth (and radian).
+fn area(symmetry: Symmetry, r: &[f64]) -> f64 {
+    match symmetry {
+        Symmetry::Planar => r[1] - r[0],
+        Symmetry::Cylindrical => 0.5 * (r[1] + r[0]) * (r[1] - r[0]),
+    }
+}
+
+/// Strain rates D_rr and D_θθ [1/s] of a zone, and its volume change in the step.
+struct Rates {
+    radial: f64,
+    hoop: f64,
+    /// Area at the end over area at the beginning [-].
+    expansion: f64,
+}
+
+impl Rates {
+    fn at_half_step(symmetry: Symmetry, r: &[f64], u: &[f64], tau: f64) -> Self {
+        let half = [r[0] + 0.5 * tau * u[0], r[1] + 0.5 * tau * u[1]];
+        let end = [r[0] + tau * u[0], r[1] + tau * u[1]];
+        let hoop = match symmetry {
+            Symmetry::Planar => 0.0,
+            Symmetry::Cylindrical => (u[0] + u[1]) / (half[0] + half[1]),
+        };
+        let radial = (u[1] - u[0]) / (half[1] - half[0]);
+        Self { radial, hoop, expansion: area(symmetry, &end) / area(symmetry, r) }
+    }
+}
+
+/// The zone at the end of the step: deviator with von Mises return, energy with the mean stress of the step.
+fn advanced(zone: &Zone, solid: &Solid<'_>, rates: &Rates, viscous: f64, tau: f64) -> Zone {
+    let third = (rates.radial + rates.hoop) / 3.0;
+    let rate = [rates.radial - third, rates.hoop - third, -third];
+    let trial: [f64; 3] =
+        std::array::from_fn(|a| zone.deviator[a] + 2.0 * solid.shear_modulus * rate[a] * tau);
+    let mises = (1.5 * trial.iter().map(|s| s * s).sum::<f64>()).sqrt();
+    let factor = if mises > solid.yield_strength { solid.yield_strength / mises } else { 1.0 };
+    let deviator = trial.map(|s| factor * s);
+
+    let density = zone.density / rates.expansion;
+    let shear_work: f64 = (0..3).map(|a| 0.5 * (zone.deviator[a] + deviator[a]) * rate[a] * tau).sum();
+    let specific_volume_change = 1.0 / density - 1.0 / zone.density;
+    let mean_volume = 0.5 * (1.0 / density + 1.0 / zone.density);
+    let before = (solid.pressure)(zone.density, zone.energy);
+    let work_against = |after: f64| {
+        zone.energy + mean_volume * shear_work - (0.5 * (before + after) + viscous) * specific_volume_change
+    };
+    // Two passes solve the implicit mean pressure to third order in the step.
+    let guess = work_against(before);
+    let energy = work_against((solid.pressure)(density, work_against((solid.pressure)(density, guess))));
+    Zone { density, energy, deviator }
+}
+
+fn viscous_pressure(scheme: &Scheme, solid: &Solid<'_>, density: f64, u: &[f64]) -> f64 {
+    let closing = (u[0] - u[1]).max(0.0);
+    let viscosity = scheme.viscosity;
+    density * closing * (viscosity.quadratic * closing + viscosity.linear * solid.sound_speed)
+}
+
+#[cfg(test)]
+#[path = "lagrangian_tests.rs"]
+mod tests;

@@ -1,0 +1,89 @@
+//! Verney's cylindrical shell in the rigid-plastic limit.
+//!
+//! A shell of an incompressible, rigid, perfectly plastic material moves inwards with u = -U0 R0/r. Its kinetic energy
+//! is spent in plastic work when the inner radius has come to r'0:
+//!
+//! $$ U_0 = \sqrt{\frac{2 Y F(\alpha, \lambda)}{\sqrt3 \rho \ln(R_1/R_0)}}, \quad
+//!    F = \int_\lambda^1 x \ln\left(1 + \frac{2\alpha + \alpha^2}{x^2}\right) dx, \quad
+//!    \alpha = \frac{R_1 - R_0}{R_0}, \quad \lambda = \frac{r_0'}{R_0}. $$
+//!
+//! Real material is elastic and compressible: it stops 0.3 % further in (see [`super::lagrangian`]).
+//!
+//! Source: Howell and Ball, J. Comput. Phys. 175 (2002) 128; Rublev and Murzov (2024), section 2.1.3.
+
+/// A shell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shell {
+    /// Inner radius R0 [m].
+    pub inner_radius: f64,
+    /// Outer radius R1 [m].
+    pub outer_radius: f64,
+    /// Density ρ [kg/m³].
+    pub density: f64,
+    /// Yield strength Y [Pa].
+    pub yield_strength: f64,
+}
+
+impl Shell {
+    /// F(α, λ) [-], integrated exactly: ½[(x² + a) ln(x² + a) - x² ln x²] between λ and 1, a = 2α + α².
+    fn work(&self, lambda: f64) -> f64 {
+        let a = (self.outer_radius / self.inner_radius).powi(2) - 1.0;
+        let primitive = |x: f64| {
+            let square = x * x;
+            let own = if square > 0.0 { square * square.ln() } else { 0.0 };
+            0.5 * ((square + a) * (square + a).ln() - own)
+        };
+        primitive(1.0) - primitive(lambda)
+    }
+
+    /// Velocity U0 [m/s] at the inner surface that brings it to `stop` [m].
+    pub fn velocity(&self, stop: f64) -> f64 {
+        let logarithm = (self.outer_radius / self.inner_radius).ln();
+        let work = self.work(stop / self.inner_radius);
+        (2.0 * self.yield_strength * work / (3f64.sqrt() * self.density * logarithm)).sqrt()
+    }
+
+    /// Inner radius r'0 [m] at the stop for the velocity U0 [m/s] of the inner surface; `None` where the shell has too
+    /// much energy to stop at all.
+    pub fn stop_radius(&self, velocity: f64) -> Option<f64> {
+        if !(0.0..=self.velocity(0.0)).contains(&velocity) {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, self.inner_radius);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if self.velocity(middle) > velocity { low = middle } else { high = middle }
+        }
+        Some(0.5 * (low + high))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHELL: Shell =
+        Shell { inner_radius: 0.08, outer_radius: 0.1, density: 2785.0, yield_strength: 0.3e9 };
+
+    #[test]
+    fn published_velocity_gives_the_published_radius() {
+        let stop = SHELL.stop_radius(208.55).expect("the shell stops");
+        assert!((stop - 0.066716).abs() < 5e-7, "{stop}");
+    }
+
+    #[test]
+    fn closed_form_of_the_work_is_its_integral() {
+        let (lambda, n) = (0.8339, 2000);
+        let width = (1.0 - lambda) / f64::from(n);
+        let integrand = |x: f64| x * (1.0 + 0.5625 / (x * x)).ln();
+        let sum: f64 = (0..n).map(|k| integrand(lambda + (f64::from(k) + 0.5) * width) * width).sum();
+        assert!((SHELL.work(lambda) - sum).abs() < 1e-9);
+    }
+
+    #[test]
+    fn shell_with_too_much_energy_does_not_stop() {
+        assert_eq!(SHELL.stop_radius(1e4), None);
+        assert_eq!(SHELL.stop_radius(f64::NAN), None);
+        assert!((SHELL.stop_radius(0.0).expect("at rest") - 0.08).abs() < 1e-12);
+    }
+}

@@ -5,7 +5,9 @@
 
 pub mod dimension;
 pub mod domain;
+pub mod kernel;
 pub mod lanes;
+pub mod neighbors;
 pub mod particles;
 
 pub use dimension::{Components, Dim2, Dim3, Dimension, Vector};

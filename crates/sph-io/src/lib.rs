@@ -1,1 +1,15 @@
 //! What leaves and enters the process: tables, plots, field images, ParaView snapshots, checkpoints, progress
+//!
+//! The crate knows no physics: slices, names and units go in, files come out. Every file is written atomically
+//! ([`atomic`]): whole or not at all. Every error names its path.
+
+pub mod atomic;
+mod color;
+mod draw;
+mod error;
+pub mod plot;
+pub mod table;
+
+pub use atomic::{write_atomic, write_atomic_with};
+pub use color::Color;
+pub use error::IoError;

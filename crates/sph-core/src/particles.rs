@@ -48,6 +48,32 @@ pub struct Particle<D: Dimension> {
     pub deviator: D::Tensor<f64>,
     /// Accumulated equivalent plastic strain [-].
     pub plastic_strain: f64,
+    /// Largest speed relative to a neighbour in the last step [m/s]: an input of the next time step.
+    pub relative_speed: f64,
+    /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
+    pub packing_excess: f64,
+}
+
+impl<D: Dimension> Particle<D> {
+    /// A free, stress-free particle of size `size` [m], mass `mass` and density `density` [kg/m³] at rest at `position`.
+    pub fn at_rest(id: u64, position: D::Vector, mass: f64, size: f64, density: f64) -> Self {
+        Self {
+            id,
+            material: 0,
+            constraint: Constraint::Free,
+            failed: false,
+            position,
+            velocity: D::Vector::default(),
+            mass,
+            size,
+            density,
+            specific_internal_energy: 0.0,
+            deviator: Components::from_fn(|_| 0.0),
+            plastic_strain: 0.0,
+            relative_speed: 0.0,
+            packing_excess: 0.0,
+        }
+    }
 }
 
 /// Particles as a structure of arrays. All columns have the same length.
@@ -77,6 +103,10 @@ pub struct Particles<D: Dimension> {
     pub deviator: D::TensorColumns,
     /// Accumulated equivalent plastic strain [-].
     pub plastic_strain: Vec<f64>,
+    /// Largest speed relative to a neighbour in the last step [m/s]: an input of the next time step.
+    pub relative_speed: Vec<f64>,
+    /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
+    pub packing_excess: Vec<f64>,
 }
 
 impl<D: Dimension> Default for Particles<D> {
@@ -94,6 +124,8 @@ impl<D: Dimension> Default for Particles<D> {
             specific_internal_energy: Vec::new(),
             deviator: Components::from_fn(|_| Vec::new()),
             plastic_strain: Vec::new(),
+            relative_speed: Vec::new(),
+            packing_excess: Vec::new(),
         }
     }
 }
@@ -127,6 +159,8 @@ impl<D: Dimension> Particles<D> {
             self.deviator[k].push(p.deviator[k]);
         }
         self.plastic_strain.push(p.plastic_strain);
+        self.relative_speed.push(p.relative_speed);
+        self.packing_excess.push(p.packing_excess);
     }
 
     /// A copy of particle `i`.
@@ -144,6 +178,8 @@ impl<D: Dimension> Particles<D> {
             specific_internal_energy: self.specific_internal_energy[i],
             deviator: Components::from_fn(|k| self.deviator[k][i]),
             plastic_strain: self.plastic_strain[i],
+            relative_speed: self.relative_speed[i],
+            packing_excess: self.packing_excess[i],
         }
     }
 
@@ -177,6 +213,8 @@ impl<D: Dimension> Particles<D> {
             list.push((format!("deviator_{}{}", axis[a], axis[b]), &self.deviator[k]));
         }
         list.push(("plastic_strain".to_string(), &self.plastic_strain));
+        list.push(("relative_speed".to_string(), &self.relative_speed));
+        list.push(("packing_excess".to_string(), &self.packing_excess));
         list
     }
 
@@ -187,7 +225,7 @@ impl<D: Dimension> Particles<D> {
         list.extend(self.velocity.as_mut());
         list.extend([&mut self.mass, &mut self.size, &mut self.density, &mut self.specific_internal_energy]);
         list.extend(self.deviator.as_mut());
-        list.push(&mut self.plastic_strain);
+        list.extend([&mut self.plastic_strain, &mut self.relative_speed, &mut self.packing_excess]);
         list
     }
 
@@ -232,6 +270,8 @@ mod tests {
             specific_internal_energy: 3.0,
             deviator: Components::from_fn(|k| x * k as f64),
             plastic_strain: 0.0,
+            relative_speed: x,
+            packing_excess: -x,
         }
     }
 

@@ -128,6 +128,30 @@ impl Lanes for Avx2 {
             std::array::from_fn(|k| if k < 4 { Self(a[k], b[k]) } else { Self(c[k - 4], d[k - 4]) })
         }
     }
+    #[inline(always)]
+    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
+        // SAFETY: the invariant of this module.
+        unsafe {
+            let quarter = |rows: usize, right: bool| {
+                let pick = |l: usize| {
+                    let row = block[4 * rows + l];
+                    if right { row.1 } else { row.0 }
+                };
+                transpose(std::array::from_fn(pick))
+            };
+            let (a, b, c, d) = (quarter(0, false), quarter(1, false), quarter(0, true), quarter(1, true));
+            std::array::from_fn(|k| if k < 4 { Self(a[k], b[k]) } else { Self(c[k - 4], d[k - 4]) })
+        }
+    }
+    #[inline(always)]
+    fn any_less(self, limit: Self) -> bool {
+        // SAFETY: the invariant of this module.
+        unsafe {
+            let low = _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0);
+            let high = _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1);
+            _mm256_movemask_pd(low) | _mm256_movemask_pd(high) != 0
+        }
+    }
 }
 
 /// Rows to columns of a 4 × 4 block.

@@ -117,6 +117,16 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
+    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
+        // SAFETY: the invariant of this module.
+        unsafe { transpose(block.map(|row| row.0)).map(Self) }
+    }
+    #[inline(always)]
+    fn any_less(self, limit: Self) -> bool {
+        // SAFETY: the invariant of this module.
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) != 0 }
+    }
+    #[inline(always)]
     fn prefetch(lines: &[Line], stride: usize, indices: &[u32; LANES]) {
         for &i in indices {
             let at = i as usize * stride;

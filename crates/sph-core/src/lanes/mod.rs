@@ -95,6 +95,10 @@ pub trait Lanes: Real {
     fn gather(column: &[f64], indices: &[u32; LANES]) -> Self {
         Self::load(&std::array::from_fn(|l| column[indices[l] as usize]))
     }
+    /// Rows to columns: lane `l` of element `k` becomes lane `k` of element `l`.
+    fn transpose(block: [Self; LANES]) -> [Self; LANES];
+    /// True if `self < limit` in some lane.
+    fn any_less(self, limit: Self) -> bool;
     /// The lanes as an array.
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {
@@ -249,7 +253,9 @@ mod tests {
             let one = L::one();
             let all = [a + b, a - b, a * b, a / b, -a, a.mul_add(b, one), a.abs().sqrt()];
             let picks = [a.max(b), b.max(a), a.min(b), b.min(a), a.select_less(b, a, b)];
-            for lanes in all.iter().chain(&picks).chain(&records) {
+            let back = L::transpose(records);
+            let any = [L::splat(a.any_less(b) as u8 as f64), L::splat(one.any_less(one) as u8 as f64)];
+            for lanes in all.iter().chain(&picks).chain(&records).chain(&back).chain(&any) {
                 // A NaN's sign and payload are nobody's concern.
                 self.1.extend(lanes.to_array().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
             }
@@ -267,9 +273,11 @@ mod tests {
                 bits
             })
             .collect();
-        assert_eq!(results[0].len(), 20 * LANES);
+        assert_eq!(results[0].len(), 30 * LANES);
         // Element k of record r, line 1, is 100 (2 r + 1) + k.
         assert_eq!(f64::from_bits(results[0][12 * LANES + 8 * 2]), 1502.0);
+        assert_eq!(f64::from_bits(results[0][20 * LANES + 2]), 1502.0, "transposed back");
+        assert_eq!(&results[0][28 * LANES..][..9], [[1.0_f64.to_bits(); 8].as_slice(), &[0]].concat());
         for result in &results[1..] {
             assert_eq!(result, &results[0]);
         }

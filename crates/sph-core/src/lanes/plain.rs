@@ -98,4 +98,12 @@ impl Lanes for Plain {
             std::array::from_fn(|l| &lines[indices[l] as usize * stride + line].0);
         std::array::from_fn(|k| Self(std::array::from_fn(|l| records[l][k])))
     }
+    #[inline(always)]
+    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
+        std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
+    }
+    #[inline(always)]
+    fn any_less(self, limit: Self) -> bool {
+        (0..LANES).any(|l| self.0[l] < limit.0[l])
+    }
 }

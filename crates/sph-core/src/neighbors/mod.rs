@@ -1,0 +1,234 @@
+//! Neighbour lists with a skin.
+//!
+//! Pairs with r_ij < s (D_i + D_j) + skin are listed, both ways (i sees j and j sees i), so that each particle gathers
+//! its own sums in a fixed order. The lists stay good until some pair has moved by more than the skin against each
+//! other; [`NeighborLists::outlived`] tells it from the ranges of displacement in tiles of particles that see each other.
+//!
+//! **Layout.** Eight consecutive particles are a block; slot k of a block holds the k-th neighbour of each. Lists of a
+//! block are padded to the longest with the particle itself, at distance zero, whose terms vanish. [`TILE_BLOCKS`]
+//! blocks are a tile: the unit of parallel work. Indices up to `n_padded` are particles; those behind are [`Halo`]
+//! copies.
+//!
+//! The modules `brute_force` and `kd_tree` find the same pairs in independent ways; tests hold the lists to them.
+
+pub mod cell_grid;
+pub mod halo;
+
+use rayon::prelude::*;
+
+use crate::dimension::{Components, Dimension, Vector};
+use crate::domain::Domain;
+use crate::lanes::LANES;
+use cell_grid::CellSortedPoints;
+pub use halo::Halo;
+
+/// Blocks in a tile.
+pub const TILE_BLOCKS: usize = 32;
+/// Particles in a tile.
+pub const TILE: usize = TILE_BLOCKS * LANES;
+
+/// Lists of the particles of one tile.
+#[derive(Clone, Debug, Default)]
+pub struct TileLists {
+    /// First slot of each block, and the end of the last.
+    pub start: Vec<u32>,
+    /// Slots: the k-th neighbour of each of eight particles.
+    pub slots: Vec<[u32; LANES]>,
+    /// Tiles (this one too) that hold particles seen from here.
+    seen: Vec<u32>,
+}
+
+/// Neighbour lists of all particles, in blocks and tiles.
+#[derive(Clone, Debug, Default)]
+pub struct NeighborLists<D: Dimension> {
+    /// Number of particles.
+    pub n_particles: usize,
+    /// Copies across periodic boundaries; copy h has index `n_padded() + h`.
+    pub halo: Halo<D>,
+    /// The lists, tile by tile.
+    pub tiles: Vec<TileLists>,
+    /// Positions when the lists were built.
+    reference: Vec<Vec<f64>>,
+    skin: f64,
+}
+
+/// What decides which pairs are listed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// s in r_ij < s (D_i + D_j): kernel support (in smoothing lengths) times θ.
+    pub factor: f64,
+    /// Distance beyond it within which pairs are listed too [m].
+    pub skin: f64,
+}
+
+impl<D: Dimension> NeighborLists<D> {
+    /// Builds lists for particles inside the box (on periodic axes), best sorted in cell order.
+    pub fn build(position: &D::AxisColumns, size: &[f64], domain: &Domain<D>, reach: Reach) -> Self {
+        let n_particles = size.len();
+        let largest = size.iter().fold(0.0_f64, |a, &b| a.max(b));
+        let farthest = 2.0 * reach.factor * largest + reach.skin;
+        let halo = Halo::<D>::build(position, domain, farthest);
+        let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(position, a));
+        let points = CellSortedPoints::<D>::new(&all, farthest.max(f64::MIN_POSITIVE));
+        let size_of: Vec<f64> = points
+            .index
+            .iter()
+            .map(|&i| {
+                if (i as usize) < n_particles {
+                    size[i as usize]
+                } else {
+                    size[halo.owner[i as usize - n_particles] as usize]
+                }
+            })
+            .collect();
+        let n_tiles = n_particles.div_ceil(TILE);
+        let search =
+            Search { points: &points, size, size_of: &size_of, halo: &halo, reach, n_particles, farthest };
+        let tiles = (0..n_tiles).into_par_iter().map(|t| search.tile(t, position)).collect();
+        let reference = position.as_ref().to_vec();
+        Self { n_particles, halo, tiles, reference, skin: reach.skin }
+    }
+
+    /// Number of particles, filled up to whole blocks: the index of the first copy.
+    pub fn n_padded(&self) -> usize {
+        self.n_particles.div_ceil(LANES) * LANES
+    }
+
+    /// Number of records that pair loops read: particles, filling, copies.
+    pub fn n_records(&self) -> usize {
+        self.n_padded() + self.halo.len()
+    }
+
+    /// Positions when the lists were built, by axis [m].
+    pub fn reference(&self) -> &[Vec<f64>] {
+        &self.reference
+    }
+
+    /// The particle that a record shows.
+    pub fn owner(&self, record: usize) -> usize {
+        if record < self.n_padded() { record } else { self.halo.owner[record - self.n_padded()] as usize }
+    }
+
+    /// Slots of a block.
+    #[inline(always)]
+    pub fn block(&self, block: usize) -> &[[u32; LANES]] {
+        let tile = &self.tiles[block / TILE_BLOCKS];
+        let b = block % TILE_BLOCKS;
+        &tile.slots[tile.start[b] as usize..tile.start[b + 1] as usize]
+    }
+
+    /// Records listed for a particle (without itself).
+    pub fn neighbors(&self, i: usize) -> impl Iterator<Item = u32> + '_ {
+        self.block(i / LANES).iter().map(move |slot| slot[i % LANES]).filter(move |&j| j as usize != i)
+    }
+
+    /// Number of listed pairs, each counted both ways.
+    pub fn n_pairs(&self) -> usize {
+        (0..self.n_particles).map(|i| self.neighbors(i).count()).sum()
+    }
+
+    /// Bytes that the lists take.
+    pub fn bytes(&self) -> usize {
+        let tile = |t: &TileLists| t.slots.capacity() * 32 + t.start.capacity() * 4 + t.seen.capacity() * 4;
+        let halo = self.halo.len() * (4 + size_of::<D::Vector>());
+        self.tiles.iter().map(tile).sum::<usize>() + halo + self.n_particles * 8 * D::COUNT
+    }
+
+    /// True if two particles that see each other may have moved by more than the skin against each other: the length
+    /// of the range of displacements over every pair of tiles that see each other bounds it.
+    pub fn outlived(&self, position: &D::AxisColumns) -> bool {
+        let range = |t: usize| {
+            let (first, end) = (t * TILE, ((t + 1) * TILE).min(self.n_particles));
+            let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+            for a in 0..D::COUNT {
+                let (now, then) = (&position[a][first..end], &self.reference[a][first..end]);
+                range[a] = now.iter().zip(then).fold(range[a], |(l, u), (x, y)| (l.min(x - y), u.max(x - y)));
+            }
+            range
+        };
+        let ranges: Vec<[(f64, f64); 3]> = (0..self.tiles.len()).map(range).collect();
+        let apart = |t: usize, s: usize| {
+            let extent = |a: usize| ranges[t][a].1.max(ranges[s][a].1) - ranges[t][a].0.min(ranges[s][a].0);
+            D::vector(extent).length()
+        };
+        (0..self.tiles.len()).any(|t| self.tiles[t].seen.iter().any(|&s| apart(t, s as usize) > self.skin))
+    }
+}
+
+/// What the search of one tile reads.
+struct Search<'a, D: Dimension> {
+    points: &'a CellSortedPoints<D>,
+    size: &'a [f64],
+    size_of: &'a [f64],
+    halo: &'a Halo<D>,
+    reach: Reach,
+    n_particles: usize,
+    farthest: f64,
+}
+
+impl<D: Dimension> Search<'_, D> {
+    fn tile(&self, t: usize, position: &D::AxisColumns) -> TileLists {
+        let first = t * TILE;
+        let end = ((t + 1) * TILE).min(self.n_particles);
+        let mut lists = TileLists { start: vec![0], ..Default::default() };
+        let mut found: [Vec<u32>; LANES] = Default::default();
+        let mut seen = vec![false; self.n_particles.div_ceil(TILE)];
+        for block in (first..end).step_by(LANES) {
+            for lane in 0..LANES {
+                found[lane].clear();
+                if block + lane < end {
+                    self.particle(block + lane, position, &mut found[lane]);
+                    self.mark_seen(&mut found[lane], &mut seen);
+                }
+            }
+            let longest = found.iter().map(Vec::len).max().unwrap_or(0);
+            for k in 0..longest {
+                let slot = |l: usize| found[l].get(k).copied().unwrap_or((block + l) as u32);
+                lists.slots.push(std::array::from_fn(slot));
+            }
+            lists.start.push(lists.slots.len() as u32);
+        }
+        lists.seen = (0..seen.len() as u32).filter(|&s| seen[s as usize]).collect();
+        lists.slots.shrink_to_fit();
+        lists
+    }
+
+    /// Records near particle `i`, in the order of the cells.
+    fn particle(&self, i: usize, position: &D::AxisColumns, found: &mut Vec<u32>) {
+        let here = D::vector(|a| position[a][i]);
+        let own = self.size[i];
+        self.points.runs_near(here, self.farthest, |first, end| {
+            let n = found.len();
+            // Branch-free: every candidate is written, and counted if it is near.
+            found.resize(n + end - first, 0);
+            let mut kept = n;
+            for p in first..end {
+                let mut r2 = 0.0;
+                for a in 0..D::COUNT {
+                    let d = self.points.position[a][p] - here[a];
+                    r2 += d * d;
+                }
+                let cut = self.reach.factor * (own + self.size_of[p]) + self.reach.skin;
+                let j = self.points.index[p];
+                found[kept] = j;
+                kept += ((r2 < cut * cut) & (j as usize != i)) as usize;
+            }
+            found.truncate(kept);
+        });
+    }
+
+    /// Turns point indices into record indices (copies stand behind the filling) and notes the tiles that are seen.
+    fn mark_seen(&self, found: &mut [u32], seen: &mut [bool]) {
+        let filling = (self.n_particles.div_ceil(LANES) * LANES - self.n_particles) as u32;
+        for j in found {
+            let owner = if (*j as usize) < self.n_particles {
+                *j
+            } else {
+                let owner = self.halo.owner[*j as usize - self.n_particles];
+                *j += filling;
+                owner
+            };
+            seen[owner as usize / TILE] = true;
+        }
+    }
+}

@@ -39,13 +39,9 @@ fn hugoniot() -> Figure {
 
 fn convergence() -> Figure {
     let n = [100.0, 200.0, 400.0, 800.0, 1600.0];
-    let slope = |y, order, text: &str| Annotation::Slope {
-        start: (150.0, y),
-        to_x: 1500.0,
-        order,
-        text: text.into(),
-    };
-    Figure::new("Sound wave", Axis::log("N"), Axis::log("L_1 error of U_x [m/s]"))
+    let slope =
+        |y, order, text: &str| Annotation::Slope { start: (150.0, y), to_x: 900.0, order, text: text.into() };
+    Figure::new("Sound wave", Axis::log("N").with_ticks(&n), Axis::log("L_1 error of U_x [m/s]"))
         .with(Series::line_with_points("CSPH", &n, &[0.21, 0.143, 0.115, 0.109, 0.108]))
         .with(Series::line_with_points("TKC as printed", &n, &[0.0301, 0.0177, 8.89e-3, 4.49e-3, 2.3e-3]))
         .with(Series::line_with_points("TKC Hancock", &n, &[0.0163, 3.48e-3, 7.9e-4, 2.1e-4, 8.0e-5]))

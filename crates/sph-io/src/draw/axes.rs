@@ -43,7 +43,7 @@ pub(crate) fn left_room(tick_width: f64) -> f64 {
 
 /// Room below a panel with words at its x axis.
 pub(crate) fn bottom_room() -> f64 {
-    TICK_SIZE + LABEL_SIZE + 3.5 * GAP
+    TICK_SIZE + LABEL_SIZE + 2.0 * GAP
 }
 
 /// Pale lines at the major ticks, to be drawn before the data.

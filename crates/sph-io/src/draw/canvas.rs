@@ -1,6 +1,7 @@
 //! A drawing surface over the back end: strokes, markers, words, clipping; then SVG or PNG.
 
 use super::Rect;
+use super::raster::Raster;
 use super::text::{self, Run};
 use crate::Color;
 use kuva::backend::raster::RasterBackend;
@@ -65,6 +66,8 @@ impl Place {
 /// The surface.
 pub(crate) struct Canvas {
     scene: Scene,
+    /// Words that read upward, drawn last.
+    upward: Vec<(String, Place)>,
     n_clips: usize,
 }
 
@@ -72,15 +75,32 @@ impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
         let mut scene = Scene::new(width.ceil(), height.ceil());
         scene.font_family = Some(FONT_FAMILY.to_owned());
-        Self { scene, n_clips: 0 }
+        Self { scene, upward: Vec::new(), n_clips: 0 }
     }
 
-    pub fn to_svg(&self) -> String {
+    pub fn into_svg(mut self) -> String {
+        for (markup, place) in std::mem::take(&mut self.upward) {
+            self.words(&markup, place);
+        }
         SvgBackend::new().render_scene(&self.scene)
     }
 
-    pub fn to_png(&self) -> Result<Vec<u8>, String> {
-        RasterBackend::new().with_scale(PIXELS_PER_POINT as f32).render_scene(&self.scene)
+    /// The scene in pixels. Words that read upward are drawn level on a canvas of their own and turned: the back
+    /// end's turned words come out heavier than its level ones.
+    pub fn into_raster(self) -> Result<Raster, String> {
+        let mut raster = self.pixels()?;
+        for (markup, place) in &self.upward {
+            let (half, height) = (text::width(markup, place.size).ceil() + 4.0, 3.0 * place.size);
+            let mut level = Self::new(2.0 * half, height);
+            let pivot = (half, 2.0 * place.size);
+            level.words(markup, Place { x: pivot.0, y: pivot.1, upward: false, ..*place });
+            raster.overlay_upward(&level.pixels()?, to_pixels(pivot), to_pixels((place.x, place.y)));
+        }
+        Ok(raster)
+    }
+
+    fn pixels(&self) -> Result<Raster, String> {
+        Raster::from_png(&RasterBackend::new().with_scale(PIXELS_PER_POINT as f32).render_scene(&self.scene)?)
     }
 
     /// Draws `draw` within `area` only.
@@ -170,6 +190,14 @@ impl Canvas {
 
     /// A line of words, with the marks of [`text`].
     pub fn text(&mut self, markup: &str, place: Place) {
+        if place.upward {
+            self.upward.push((markup.to_owned(), place));
+        } else {
+            self.words(markup, place);
+        }
+    }
+
+    fn words(&mut self, markup: &str, place: Place) {
         let runs = text::runs(markup);
         if let [run] = runs.as_slice() {
             self.run(run, place);
@@ -209,6 +237,10 @@ impl Canvas {
             color: Some(back_color(place.color)),
         });
     }
+}
+
+fn to_pixels((x, y): (f64, f64)) -> (i64, i64) {
+    ((x * PIXELS_PER_POINT).round() as i64, (y * PIXELS_PER_POINT).round() as i64)
 }
 
 fn back_color(color: Color) -> BackColor {

@@ -6,6 +6,7 @@
 
 pub(crate) mod axes;
 pub(crate) mod canvas;
+pub(crate) mod raster;
 pub(crate) mod scale;
 pub(crate) mod text;
 pub(crate) mod ticks;

@@ -1,7 +1,7 @@
 //! Words with subscripts and superscripts, and how wide they are.
 //!
 //! `u_s`, `sigma_{xx}` and `10^{-3}` are set as one would write them: a subscript or superscript is a braced group,
-//! or the letters and digits (and sign) that follow. A backslash takes the next character as it stands.
+//! or the letters and digits that follow (a sign before them). A backslash takes the next character as it stands.
 
 /// Size of a subscript or superscript relative to the text around it.
 const SMALL: f64 = 0.72;
@@ -83,8 +83,11 @@ fn group(characters: &mut std::iter::Peekable<std::str::Chars<'_>>) -> String {
         return characters.by_ref().take_while(|&character| character != '}').collect();
     }
     let mut text = String::new();
-    while let Some(character) = characters.next_if(|&c| c.is_alphanumeric() || (c == '-' || c == '+')) {
-        text.push(if character == '-' { '−' } else { character });
+    if let Some(sign) = characters.next_if(|character| matches!(character, '-' | '−' | '+')) {
+        text.push(if sign == '-' { '−' } else { sign });
+    }
+    while let Some(character) = characters.next_if(|character| character.is_alphanumeric()) {
+        text.push(character);
     }
     text
 }
@@ -101,6 +104,7 @@ mod tests {
     fn marks_end_with_their_word_or_brace() {
         let run = |text: &str, up| (text.to_owned(), up);
         assert_eq!(texts("u_s [m/s]"), [run("u", false), run("s", false), run(" [m/s]", false)]);
+        assert_eq!(texts("u_s-u_p").len(), 4);
         assert_eq!(texts("10^-3"), [run("10", false), run("−3", true)]);
         assert_eq!(texts("a_{x, y}b"), [run("a", false), run("x, y", false), run("b", false)]);
         assert_eq!(texts(r"file\_name"), [run("file_name", false)]);

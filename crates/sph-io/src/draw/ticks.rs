@@ -17,6 +17,12 @@ impl Ticks {
         let wanted = wanted.max(2);
         if log { logarithmic(range, wanted) } else { linear(range, wanted) }
     }
+
+    /// Ticks with words at given values.
+    pub fn at(values: &[f64]) -> Self {
+        let major = values.iter().map(|&value| (value, signed(&value.to_string()))).collect();
+        Self { major, minor: Vec::new(), exponent: None }
+    }
 }
 
 fn linear((low, high): (f64, f64), wanted: usize) -> Ticks {

@@ -45,13 +45,14 @@ fn finite_or_zero(value: f64) -> f64 {
     if value.is_finite() { value.abs() } else { 0.0 }
 }
 
-pub(super) fn draw_series(canvas: &mut Canvas, plan: &PanelPlan<'_>, idx: usize, series: &Series) {
-    if let Some(stroke) = series.stroke(idx) {
-        for piece in pieces(plan, series) {
-            canvas.polyline(&piece, stroke);
+/// Curves first, so that no curve hides a marker.
+pub(super) fn draw_all_series(canvas: &mut Canvas, plan: &PanelPlan<'_>) {
+    for (idx, series) in plan.panel.series.iter().enumerate() {
+        if let Some(stroke) = series.stroke(idx) {
+            pieces(plan, series).iter().for_each(|piece| canvas.polyline(piece, stroke));
         }
     }
-    if series.has_markers() {
+    for (idx, series) in plan.panel.series.iter().enumerate().filter(|(_, series)| series.has_markers()) {
         draw_error_bars(canvas, plan, idx, series);
         for (&x, &y) in series.x.iter().zip(&series.y) {
             if let Some(center) = plan.place(x, y) {

@@ -35,7 +35,11 @@ impl PanelPlan<'_> {
 pub(super) fn draw(figure: &Figure) -> Canvas {
     let mut legend_room = 0.0;
     let mut plans = plan(figure, legend_room);
-    let legends: Vec<Option<Legend>> = plans.iter().map(legend::plan).collect();
+    let legends: Vec<Option<Legend>> = plans
+        .iter()
+        .enumerate()
+        .map(|(idx, plan)| Some(legend::plan(plan, wanted_legend(figure, idx)?)))
+        .collect();
     for legend in legends.iter().flatten().filter(|legend| legend.is_outside()) {
         legend_room = legend.width().max(legend_room);
     }
@@ -61,9 +65,7 @@ fn draw_panel(canvas: &mut Canvas, plan: &PanelPlan<'_>, legend: Option<&Legend>
     axes::draw_grid(canvas, plan.area, &plan.x, &plan.y);
     canvas.clipped(plan.area, |canvas| {
         data::draw_annotations(canvas, plan);
-        for (idx, series) in plan.panel.series.iter().enumerate() {
-            data::draw_series(canvas, plan, idx, series);
-        }
+        data::draw_all_series(canvas, plan);
     });
     axes::draw_frame(canvas, plan.area, &plan.x, &plan.y);
     axes::draw_y_words(canvas, plan.area, &plan.y, tick_width);
@@ -78,7 +80,7 @@ fn plan(figure: &Figure, legend_room: f64) -> Vec<PanelPlan<'_>> {
         figure.panels.iter().map(|panel| y_axis(panel, figure.panel_height)).collect();
     let tick_width = y_axes.iter().map(AxisPlan::tick_width).fold(0.0, f64::max);
     let left = RIM + axes::left_room(tick_width);
-    let right = (figure.width - RIM - legend_room).max(left + 50.0);
+    let right = (figure.width - 2.0 * RIM - legend_room).max(left + 50.0);
     let mut top = if figure.title.is_empty() { RIM } else { RIM + 1.8 * TITLE_SIZE };
     let x = x_axis(figure, (left, right));
     let mut plans = Vec::new();
@@ -111,12 +113,19 @@ fn axis(axis: &Axis, data_range: (f64, f64), span: (f64, f64), points_per_tick: 
     AxisPlan {
         label: axis.label.clone(),
         scale: Scale { range, span, log: axis.log },
-        ticks: Ticks::new(range, axis.log, wanted),
+        ticks: match &axis.ticks {
+            Some(values) => Ticks::at(values),
+            None => Ticks::new(range, axis.log, wanted),
+        },
     }
 }
 
 /// The place asked for, with [`LegendPosition::Auto`] still to be resolved; `None` if nothing is to be shown.
-pub(super) fn wanted_legend(panel: &Panel) -> Option<LegendPosition> {
+pub(super) fn wanted_legend(figure: &Figure, idx: usize) -> Option<LegendPosition> {
+    let panel = &figure.panels[idx];
     let is_empty = panel.series.iter().all(|series| series.label.is_empty());
-    (panel.legend != LegendPosition::Hidden && !is_empty).then_some(panel.legend)
+    let labels = |panel: &Panel| -> Vec<String> { panel.series.iter().map(|s| s.label.clone()).collect() };
+    let is_repeated =
+        idx > 0 && panel.legend == LegendPosition::Auto && labels(panel) == labels(&figure.panels[0]);
+    (panel.legend != LegendPosition::Hidden && !is_empty && !is_repeated).then_some(panel.legend)
 }

@@ -1,6 +1,6 @@
 //! The legend, and the search for a place where it hides no data.
 
-use super::layout::{PanelPlan, wanted_legend};
+use super::layout::PanelPlan;
 use super::{LegendPosition, Series, data};
 use crate::Color;
 use crate::draw::canvas::{Anchor, Canvas, Place, Stroke};
@@ -32,8 +32,7 @@ const CANDIDATES: [(f64, f64); 8] =
     [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.0), (0.5, 1.0), (1.0, 0.5), (0.0, 0.5)];
 
 /// Finds the legend of a panel a place.
-pub(super) fn plan(panel: &PanelPlan<'_>) -> Option<Legend> {
-    let position = wanted_legend(panel.panel)?;
+pub(super) fn plan(panel: &PanelPlan<'_>, position: LegendPosition) -> Legend {
     let size = size(&panel.panel.series);
     let place = match position {
         LegendPosition::TopLeft => LegendPlace::Inside(0.0, 0.0),
@@ -43,7 +42,7 @@ pub(super) fn plan(panel: &PanelPlan<'_>) -> Option<Legend> {
         LegendPosition::Auto => free_place(panel, size),
         LegendPosition::Outside | LegendPosition::Hidden => LegendPlace::Outside,
     };
-    Some(Legend { size, place })
+    Legend { size, place }
 }
 
 fn size(series: &[Series]) -> (f64, f64) {

@@ -34,12 +34,14 @@ pub struct Axis {
     pub log: bool,
     /// Least and greatest value shown; chosen from the data if absent.
     pub range: Option<(f64, f64)>,
+    /// Values that carry numbers, such as the resolutions of a study; chosen if absent.
+    pub ticks: Option<Vec<f64>>,
 }
 
 impl Axis {
     /// A linear axis with a range chosen from the data.
     pub fn new(label: impl Into<String>) -> Self {
-        Self { label: label.into(), log: false, range: None }
+        Self { label: label.into(), log: false, range: None, ticks: None }
     }
 
     /// A logarithmic axis with a range chosen from the data.
@@ -51,6 +53,12 @@ impl Axis {
     #[must_use]
     pub fn with_range(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
+    }
+
+    /// The axis with numbers at these values only.
+    #[must_use]
+    pub fn with_ticks(self, values: &[f64]) -> Self {
+        Self { ticks: Some(values.to_vec()), ..self }
     }
 }
 
@@ -178,7 +186,8 @@ pub enum Annotation {
 /// Where the legend stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LegendPosition {
-    /// The place inside that hides no data, or beside the panel if there is none.
+    /// The place inside that hides no data, or beside the panel if there is none. In a stack, a panel whose entries
+    /// are those of the first panel goes without.
     #[default]
     Auto,
     /// Inside, upper left.
@@ -306,7 +315,7 @@ impl Figure {
     pub fn write_svg(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         self.check().map_err(|reason| IoError::invalid(path, reason))?;
-        atomic::write_atomic(path, layout::draw(self).to_svg().as_bytes())
+        atomic::write_atomic(path, layout::draw(self).into_svg().as_bytes())
     }
 
     /// Writes the figure as PNG, atomically.
@@ -316,7 +325,8 @@ impl Figure {
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         self.check().map_err(|reason| IoError::invalid(path, reason))?;
-        let png = layout::draw(self).to_png().map_err(|reason| IoError::invalid(path, reason))?;
+        let png = layout::draw(self).into_raster().and_then(|raster| raster.to_png());
+        let png = png.map_err(|reason| IoError::invalid(path, reason))?;
         atomic::write_atomic(path, &png)
     }
 

@@ -91,3 +91,130 @@ pub enum LibraryError {
         faults: Vec<MaterialError>,
     },
 }
+
+/// A wave that cannot be; each message names the condition that breaks.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum HugoniotError {
+    /// The piston does not push.
+    #[error(
+        "piston velocity {value} m/s must be positive and finite: a receding piston sends a release, not a shock"
+    )]
+    PistonVelocity {
+        /// Piston velocity [m/s].
+        value: f64,
+    },
+    /// The material has no Hugoniot elastic limit.
+    #[error(
+        "material `{material}` has no elastic limit: it needs a shear modulus and a finite yield strength"
+    )]
+    NoElasticLimit {
+        /// Name of the material.
+        material: String,
+    },
+    /// No density gives the piston's velocity.
+    #[error(
+        "no state behind the shock moves at {piston_velocity} m/s: energy conservation leaves no density beyond {density_limit} kg/m³"
+    )]
+    BeyondCompressionLimit {
+        /// Piston velocity [m/s].
+        piston_velocity: f64,
+        /// Density that no shock passes [kg/m³].
+        density_limit: f64,
+    },
+    /// Even the weakest plastic wave overtakes the precursor.
+    #[error(
+        "no two-wave structure: the weakest plastic wave ({plastic_speed} m/s) is not slower than the precursor ({precursor_speed} m/s)"
+    )]
+    PrecursorTooSlow {
+        /// Speed of the elastic precursor [m/s].
+        precursor_speed: f64,
+        /// Speed of an infinitely weak plastic wave behind it [m/s].
+        plastic_speed: f64,
+    },
+    /// No piston velocity makes the plastic wave catch the precursor.
+    #[error("the plastic wave stays slower than the precursor up to a piston velocity of {searched_to} m/s")]
+    NeverOverdriven {
+        /// Highest piston velocity that was tried [m/s].
+        searched_to: f64,
+    },
+    /// The porous medium is not lighter than its solid.
+    #[error(
+        "initial density {initial_density} kg/m³ must be positive and less than the solid's {solid_density} kg/m³"
+    )]
+    NotPorous {
+        /// Density of the medium [kg/m³].
+        initial_density: f64,
+        /// Reference density of the solid [kg/m³].
+        solid_density: f64,
+    },
+    /// A stress, speed or rate of a porous medium that cannot be.
+    #[error("{field} = {value} {unit} must be finite and not less than {least}")]
+    BadNumber {
+        /// Which number.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The least that would do.
+        least: f64,
+    },
+    /// Heating outweighs compression: stress falls with density.
+    #[error(
+        "porosity {porosity} is not less than {limit}: the heat of compaction expands the solid more than the shock compresses it"
+    )]
+    AnomalousCompaction {
+        /// Ratio of the densities of solid and medium [1].
+        porosity: f64,
+        /// Ratio from which on the Hugoniot is anomalous [1].
+        limit: f64,
+    },
+    /// The shut-pore state would hang together by tension.
+    #[error(
+        "pores cannot be shut by a yielded solid at {piston_velocity} m/s: the mean pressure behind would be {pressure} Pa, below zero"
+    )]
+    MeanTension {
+        /// Piston velocity [m/s].
+        piston_velocity: f64,
+        /// Mean pressure that would result [Pa].
+        pressure: f64,
+    },
+    /// The piston is slower than the matter behind the precursor.
+    #[error(
+        "piston velocity {piston_velocity} m/s does not exceed the {precursor_velocity} m/s behind the precursor"
+    )]
+    BelowPrecursor {
+        /// Piston velocity [m/s].
+        piston_velocity: f64,
+        /// Particle velocity behind the precursor [m/s].
+        precursor_velocity: f64,
+    },
+    /// The compaction wave is not slower than its precursor.
+    #[error(
+        "the compaction wave ({wave_speed} m/s) is not slower than its precursor ({precursor_speed} m/s)"
+    )]
+    PrecursorOvertaken {
+        /// Speed of the compaction wave [m/s].
+        wave_speed: f64,
+        /// Speed of the precursor [m/s].
+        precursor_speed: f64,
+    },
+    /// A compaction curve was asked outside the range of its data.
+    #[error("stress {stress} Pa lies outside the curve's range, {least} to {greatest} Pa")]
+    OutsideCurve {
+        /// Stress behind the wave [Pa].
+        stress: f64,
+        /// Stress of the precursor [Pa].
+        least: f64,
+        /// End of the data [Pa].
+        greatest: f64,
+    },
+    /// A compaction curve was asked for a piston that is too fast for its data.
+    #[error("piston velocity {piston_velocity} m/s is beyond the curve's data, which end at {greatest} m/s")]
+    BeyondCurve {
+        /// Piston velocity [m/s].
+        piston_velocity: f64,
+        /// Piston velocity at the end of the data [m/s].
+        greatest: f64,
+    },
+}

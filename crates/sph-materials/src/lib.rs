@@ -17,7 +17,11 @@
 //! | [`eos`] | \\( P(\rho, e) \\) and the exact sound speed of each equation of state |
 //! | [`strength`] | elasticity, von Mises yield, return to the yield surface |
 //! | [`failure`] | what happens when the tensile strength is passed |
+//! | [`spin`] | how a stress deviator turns with the matter (Jaumann rate) |
 //! | [`sound`] | which sound speed a contact between particles uses |
+//! | [`jump`] | states on both sides of a shock, and the residuals of its three conservation laws |
+//! | [`hugoniot`] | exact waves ahead of a piston: elastic, two-wave, overdriven |
+//! | [`porous`] | jump conditions of a porous medium: shut pores, snow-plow, P-α curve |
 //! | [`library`] | named materials, each number with its unit and source |
 //!
 //! # Example
@@ -31,17 +35,27 @@
 //! # Ok::<(), sph_materials::LibraryError>(())
 //! ```
 
+// Units in brackets, such as [Pa], read as links to rustdoc.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 pub mod eos;
 pub mod error;
 pub mod failure;
+pub mod hugoniot;
+pub mod jump;
 pub mod library;
 pub mod material;
+pub mod porous;
+mod root;
+mod shock;
 pub mod sound;
+pub mod spin;
 pub mod strength;
 
 pub use eos::EquationOfState;
-pub use error::{LibraryError, MaterialError};
+pub use error::{HugoniotError, LibraryError, MaterialError};
 pub use failure::{Failure, TensileState};
+pub use jump::{Jump, ShockState};
 pub use material::Material;
 pub use sound::SoundSpeedModel;
 pub use strength::Strength;

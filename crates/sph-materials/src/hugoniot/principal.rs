@@ -1,0 +1,59 @@
+//! Principal Hugoniot: one shock from rest into a strengthless solid, in closed form.
+//!
+//! With \\( r = \rho/\rho_0 \\):
+//!
+//! | equation of state | \\( u_s(u_p) \\) |
+//! |---|---|
+//! | Mie-Grüneisen | \\( c_a + s_a u_p \\), by construction |
+//! | linear | \\( \tfrac12 u_p + \sqrt{\tfrac14 u_p^2 + c_0^2} \\), from \\( u_s^2 = c_0^2 r \\) |
+//! | linear-Γ | \\( w + \sqrt{w^2 + c_0^2} \\), \\( w = \tfrac14 (\Gamma + 1) u_p \\), from \\( u_s^2 = c_0^2 r/(1 - \tfrac12(\Gamma - 1)(r - 1)) \\) |
+//! | logarithmic | \\( r u_p/(r - 1) \\) with \\( u_p^2 = (B/\rho_0) \ln r\, (1 - 1/r) \\), one root |
+
+use super::check_piston;
+use crate::eos::{EquationOfState, Logarithmic};
+use crate::error::HugoniotError;
+use crate::jump::{Jump, ShockState};
+use crate::material::Material;
+use crate::root::turning_point;
+
+/// The shock ahead of a piston [m/s] if the solid had no strength.
+///
+/// # Errors
+///
+/// [`HugoniotError::PistonVelocity`] for a piston that does not push.
+pub fn principal(material: &Material, piston_velocity: f64) -> Result<Jump, HugoniotError> {
+    check_piston(piston_velocity)?;
+    let (rho0, u_p) = (material.reference_density, piston_velocity);
+    let u_s = shock_velocity(&material.equation_of_state, rho0, u_p);
+    let pressure = rho0 * u_s * u_p;
+    let behind = ShockState {
+        density: rho0 * u_s / (u_s - u_p),
+        particle_velocity: u_p,
+        longitudinal_stress: -pressure,
+        pressure,
+        specific_internal_energy: 0.5 * u_p * u_p,
+    };
+    Ok(Jump { ahead: ShockState::at_rest(rho0), behind, wave_speed: u_s })
+}
+
+fn shock_velocity(eos: &EquationOfState, rho0: f64, u_p: f64) -> f64 {
+    match eos {
+        EquationOfState::MieGruneisen(model) => model.bulk_sound_speed + model.hugoniot_slope * u_p,
+        EquationOfState::Linear(model) => (0.5 * u_p).hypot(model.bulk_sound_speed) + 0.5 * u_p,
+        EquationOfState::LinearGamma(model) => {
+            let w = 0.25 * (model.gamma + 1.0) * u_p;
+            w + w.hypot(model.bulk_sound_speed)
+        }
+        EquationOfState::Logarithmic(model) => logarithmic_shock_velocity(model, rho0, u_p),
+    }
+}
+
+/// With \\( L = \ln r \\): \\( L (1 - e^{-L}) = \rho_0 u_p^2/B \\), \\( u_s = u_p/(1 - e^{-L}) \\).
+fn logarithmic_shock_velocity(model: &Logarithmic, rho0: f64, u_p: f64) -> f64 {
+    let mach_squared = rho0 * u_p * u_p / model.bulk_modulus;
+    let compression = |log_ratio: f64| -(-log_ratio).exp_m1();
+    // L(1 - e^-L) lies above M^2 at L = M^2 + 2 M: about L^2 for small L, about L for large.
+    let high = mach_squared + 2.0 * mach_squared.sqrt();
+    let log_ratio = turning_point(0.0, high, |l| l * compression(l) >= mach_squared);
+    u_p / compression(log_ratio)
+}

@@ -1,0 +1,166 @@
+//! A measured compaction curve \\( \alpha(P) \\), turned into u_s(u_p) by the jump conditions.
+//!
+//! \\[ \alpha(P) = 1 + (\alpha_1 - 1)\, e^{-a (P - P_1)}, \qquad \alpha = \rho_s/\rho \\]
+//!
+//! with \\( P \\) the longitudinal stress behind the wave, \\( \rho_s \\) the density of the solid at that stress and energy, and
+//! \\( \alpha_1 \\) the distension behind the precursor of stress \\( P_1 \\) and speed \\( D_1 \\):
+//! \\( u_1 = P_1/(\rho_{00} D_1) \\), \\( \rho_1 = \rho_{00} D_1/(D_1 - u_1) \\), \\( e_1 = \tfrac12 u_1^2 \\). For the main wave
+//! \\( e = e_1 + \tfrac12 (P + P_1)(V_1 - V) \\) with \\( V = \alpha/\rho_s \\), and \\( P(\rho_s, e) = P \\) of the solid's own equation of
+//! state (strengthless) closes the set; then \\( u_s - u_1 = V_1 \sqrt{(P - P_1)/(V_1 - V)} \\).
+//!
+//! Velocities are relative to the undisturbed medium, as they are measured.
+//!
+//! # Validity
+//!
+//! From the precursor's stress to the end of the data, for pressed copper powder 0.14 to 3.5 GPa; outside it is an error.
+//! The amplitude and speed of the precursor are given to two digits.
+//!
+//! # Source
+//!
+//! R. R. Boade, "Principal Hugoniot, second-shock Hugoniot, and release behavior of pressed copper powder", J. Appl.
+//! Phys. 41 (1970) 4542-4551. Form of P(ρ, e, α): W. Herrmann, J. Appl. Phys. 40 (1969) 2490-2499.
+
+use super::{PorousMedium, Precursor};
+use crate::error::HugoniotError;
+use crate::hugoniot::check_piston;
+use crate::jump::{Jump, ShockState};
+use crate::material::Material;
+use crate::root::turning_point;
+
+/// A kilobar [Pa].
+const KILOBAR: f64 = 1e8;
+
+/// An exponential compaction curve behind a precursor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompactionCurve {
+    medium: PorousMedium,
+    precursor: ShockState,
+    precursor_speed: f64,
+    decay: f64,
+    greatest_stress: f64,
+}
+
+impl CompactionCurve {
+    /// Pressed copper powder of Boade (1970): 6400 kg/m³, precursor 1.4 kbar at 1.9 km/s, 0.254 per kbar, data to 35 kbar.
+    ///
+    /// # Errors
+    ///
+    /// A solid that is not denser than 6400 kg/m³.
+    pub fn pressed_copper_powder(solid: &Material) -> Result<Self, HugoniotError> {
+        Self::new(solid, 6400.0, (1.4 * KILOBAR, 1900.0), 0.254 / KILOBAR, 35.0 * KILOBAR)
+    }
+
+    /// A curve from the initial density [kg/m³], stress [Pa] and speed [m/s] of the precursor, decay a [1/Pa], and the
+    /// greatest stress of the data [Pa].
+    ///
+    /// # Errors
+    ///
+    /// As [`PorousMedium::new`]; a decay or an end of the data that cannot be.
+    pub fn new(
+        solid: &Material,
+        initial_density: f64,
+        (stress, speed): (f64, f64),
+        decay: f64,
+        greatest_stress: f64,
+    ) -> Result<Self, HugoniotError> {
+        let medium = PorousMedium::new(solid, initial_density, Precursor::Moving { stress, speed })?;
+        if !(decay.is_finite() && decay >= 0.0) {
+            return Err(HugoniotError::BadNumber { field: "decay", value: decay, unit: "1/Pa", least: 0.0 });
+        }
+        if !(greatest_stress.is_finite() && greatest_stress > stress) {
+            let value = greatest_stress;
+            return Err(HugoniotError::BadNumber {
+                field: "greatest_stress",
+                value,
+                unit: "Pa",
+                least: stress,
+            });
+        }
+        let precursor = medium.state_ahead();
+        Ok(Self { medium, precursor, precursor_speed: speed, decay, greatest_stress })
+    }
+
+    /// Distension \\( \alpha_1 \\) behind the precursor [1].
+    pub fn precursor_distension(&self) -> f64 {
+        let ahead = &self.precursor;
+        self.solid_density(ahead.pressure, |_| ahead.specific_internal_energy) / ahead.density
+    }
+
+    /// Distension \\( \alpha \\) behind the main wave at a stress [Pa] within the data [1].
+    pub fn distension(&self, stress: f64) -> f64 {
+        1.0 + (self.precursor_distension() - 1.0) * (-self.decay * (stress - self.precursor.pressure)).exp()
+    }
+
+    /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that density.
+    fn solid_density(&self, pressure: f64, energy: impl Fn(f64) -> f64) -> f64 {
+        let solid = &self.medium.solid;
+        let is_dense_enough = |density: f64| solid.pressure(density, energy(density)) >= pressure;
+        let mut high = solid.reference_density;
+        while !is_dense_enough(high) {
+            high *= 1.01;
+        }
+        turning_point(0.5 * solid.reference_density, high, is_dense_enough)
+    }
+
+    /// The main wave of a given stress behind [Pa].
+    ///
+    /// # Errors
+    ///
+    /// [`HugoniotError::OutsideCurve`] outside the data; [`HugoniotError::PrecursorOvertaken`].
+    pub fn wave_of_stress(&self, stress: f64) -> Result<Jump, HugoniotError> {
+        let ahead = self.precursor;
+        if !(stress > ahead.pressure && stress <= self.greatest_stress) {
+            let (least, greatest) = (ahead.pressure, self.greatest_stress);
+            return Err(HugoniotError::OutsideCurve { stress, least, greatest });
+        }
+        let jump = self.jump_to(stress);
+        self.medium.slower_than_precursor(jump)
+    }
+
+    fn jump_to(&self, stress: f64) -> Jump {
+        let ahead = self.precursor;
+        let alpha = self.distension(stress);
+        let volume_loss = |rho_s: f64| 1.0 / ahead.density - alpha / rho_s;
+        let energy = |rho_s: f64| {
+            ahead.specific_internal_energy + 0.5 * (stress + ahead.pressure) * volume_loss(rho_s)
+        };
+        let rho_s = self.solid_density(stress, energy);
+        let mass_flux = ((stress - ahead.pressure) / volume_loss(rho_s)).sqrt();
+        let behind = ShockState {
+            density: rho_s / alpha,
+            particle_velocity: ahead.particle_velocity + mass_flux * volume_loss(rho_s),
+            longitudinal_stress: -stress,
+            pressure: stress,
+            specific_internal_energy: energy(rho_s),
+        };
+        Jump { ahead, behind, wave_speed: ahead.particle_velocity + mass_flux / ahead.density }
+    }
+
+    /// The main wave ahead of a piston [m/s].
+    ///
+    /// # Errors
+    ///
+    /// A piston that does not push, is slower than the matter behind the precursor, or too fast for the data.
+    pub fn wave(&self, piston_velocity: f64) -> Result<Jump, HugoniotError> {
+        check_piston(piston_velocity)?;
+        self.medium.state_ahead_of(piston_velocity)?;
+        let velocity = |stress: f64| self.jump_to(stress).behind.particle_velocity;
+        let greatest = velocity(self.greatest_stress);
+        if piston_velocity > greatest {
+            return Err(HugoniotError::BeyondCurve { piston_velocity, greatest });
+        }
+        let least_stress = self.precursor.pressure * (1.0 + 1e-12);
+        let stress = turning_point(least_stress, self.greatest_stress, |p| velocity(p) >= piston_velocity);
+        self.wave_of_stress(stress)
+    }
+
+    /// Speed of the precursor in the undisturbed medium [m/s].
+    pub fn precursor_speed(&self) -> f64 {
+        self.precursor_speed
+    }
+
+    /// State behind the precursor.
+    pub fn precursor_state(&self) -> ShockState {
+        self.precursor
+    }
+}

@@ -5,11 +5,14 @@
 
 pub mod dimension;
 pub mod domain;
+pub mod error;
 pub mod kernel;
 pub mod lanes;
 pub mod neighbors;
 pub mod particles;
+pub mod reduce;
 
 pub use dimension::{Components, Dim2, Dim3, Dimension, Vector};
 pub use domain::Domain;
+pub use error::CoreError;
 pub use particles::{Constraint, Particle, Particles};

@@ -11,8 +11,10 @@
 //!
 //! The modules `brute_force` and `kd_tree` find the same pairs in independent ways; tests hold the lists to them.
 
+pub mod brute_force;
 pub mod cell_grid;
 pub mod halo;
+pub mod kd_tree;
 
 use rayon::prelude::*;
 

@@ -1,8 +1,9 @@
 //! Tensile failure.
 //!
-//! The source gives a tensile strength \\( T \\) and no rule. The rule here: a point whose mean tension \\( -P \\) passes
-//! \\( T \\) fails. A failed point carries no tension and no shear (\\( P = 0 \\) in expansion, \\( S = 0 \\)) until it is
-//! compressed again, \\( P > 0 \\), which heals it with a zero deviator to start from.
+//! The source gives a tensile strength \\( T \\) and no rule. The rule here: a point whose mean tension
+//! \\( -P \\) passes \\( T \\) fails. A failed point carries no tension and no shear (\\( P = 0 \\) in
+//! expansion, \\( S = 0 \\)) until it is compressed again, \\( P > 0 \\), which heals it with a zero deviator
+//! to start from.
 //!
 //! ```text
 //! intact --- -P > T ---> failed (P := 0, S := 0)
@@ -10,13 +11,13 @@
 //!   +------- P > 0 ---------+
 //! ```
 //!
-//! Only the pressure and the deviator that are *used* change; density and energy go on by their own equations, so the
-//! equation of state says when the gap has closed.
+//! Only the pressure and the deviator that are *used* change; density and energy go on by their own equations,
+//! so the equation of state says when the gap has closed.
 //!
 //! # Validity
 //!
-//! A cut-off, not a damage model: no rate, no energy of new surface, no dependence on the size of the point. A regular
-//! particle lattice under tension needs it: without a cut-off it clumps numerically.
+//! A cut-off, not a damage model: no rate, no energy of new surface, no dependence on the size of the point. A
+//! regular particle lattice under tension needs it: without a cut-off it clumps numerically.
 
 use crate::eos::Parameter;
 use serde::{Deserialize, Serialize};

@@ -1,13 +1,13 @@
-//! What one point of solid matter does: pressure, strength, failure, sound speeds, and the shock waves that follow
-//! from them in closed form.
+//! What one point of solid matter does: pressure, strength, failure, sound speeds, and the shock waves that
+//! follow from them in closed form.
 //!
 //! Everything here is scalar or a small array; nothing knows of particles, grids or files.
 //!
 //! # Conventions
 //!
-//! SI units. Stress is positive in tension, pressure positive in compression: \\( \sigma = -P I + S \\).
-//! The specific internal energy \\( e \\) is counted from the reference state \\( \rho = \rho_0,\; P = 0 \\) and holds all
-//! of the internal energy, that of elastic shear included.
+//! SI units. Stress is positive in tension, pressure positive in compression: \\( \sigma = -P I + S \\). The
+//! specific internal energy \\( e \\) is counted from the reference state \\( \rho = \rho_0,\; P = 0 \\) and
+//! holds all of the internal energy, that of elastic shear included.
 //!
 //! # Rooms
 //!

@@ -1,7 +1,7 @@
 //! The whole material: reference density, one equation of state, one strength, one failure rule, one sound speed.
 //!
-//! [`Material::pressure`] and the sound speeds are called once a particle and step: they allocate nothing and check nothing.
-//! What can be checked beforehand is checked by [`Material::validate`], once.
+//! [`Material::pressure`] and the sound speeds are called once a particle and step: they allocate nothing and
+//! check nothing. What can be checked beforehand is checked by [`Material::validate`], once.
 
 use crate::eos::{EquationOfState, Parameter};
 use crate::error::MaterialError;

@@ -1,7 +1,7 @@
 //! The shock adiabat from any state of a solid whose deviator behind the wave is a known function of density.
 //!
-//! With \\( \Sigma = P + s \\), \\( s = -S_{xx} \\), and \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), the energy condition
-//! \\( e_b = e_a + \tfrac12 (\Sigma_a + \Sigma_b)(V_a - V_b) \\) is linear in \\( P_b \\):
+//! With \\( \Sigma = P + s \\), \\( s = -S_{xx} \\), and \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), the
+//! energy condition \\( e_b = e_a + \tfrac12 (\Sigma_a + \Sigma_b)(V_a - V_b) \\) is linear in \\( P_b \\):
 //!
 //! \\[ P_b = \frac{P(\rho, e_a) + h (\Sigma_a + s)}{1 - h}, \qquad h = \tfrac12 a(\rho)(V_a - V_b). \\]
 //!

@@ -1,16 +1,19 @@
 //! How a stress deviator turns with the matter.
 //!
-//! With the velocity gradient \\( (\nabla U)_{kl} = \partial U_k/\partial x_l \\) the spin is its antisymmetric part with the
-//! factor one half, \\( W = \tfrac12 (\nabla U - \nabla U^T) \\), and the Jaumann rate of Hooke's law reads
+//! With the velocity gradient \\( (\nabla U)_{kl} = \partial U_k/\partial x_l \\) the spin is its antisymmetric
+//! part with the factor one half, \\( W = \tfrac12 (\nabla U - \nabla U^T) \\), and the Jaumann rate of Hooke's
+//! law reads
 //!
 //! \\[ \dot S = 2G\,(D - \tfrac13 \mathrm{tr}(D)\, I) + W S - S W. \\]
 //!
-//! Over one step \\( \tau \\) with constant spin the last two terms turn S rigidly. [`rotate`] does this with the Cayley
-//! transform \\( R = (I - \tfrac12 \tau W)^{-1} (I + \tfrac12 \tau W) \\): a true rotation for any step, about the exact axis, by
-//! the angle \\( 2 \arctan(\omega\tau/2) \\), so the invariants of S stay and the angle is second-order accurate.
+//! Over one step \\( \tau \\) with constant spin the last two terms turn S rigidly. [`rotate`] does this with
+//! the Cayley transform \\( R = (I - \tfrac12 \tau W)^{-1} (I + \tfrac12 \tau W) \\): a true rotation for any
+//! step, about the exact axis, by the angle \\( 2 \arctan(\omega\tau/2) \\), so the invariants of S stay and
+//! the angle is second-order accurate.
 //!
-//! Differences from the source: paper eqs. (22), (23) rotate by the full curl and with the opposite sign; a rigid turn
-//! would rotate S twice as far and backwards. The array of paper eq. (20) is the transpose of the gradient used here.
+//! Differences from the source: paper eqs. (22), (23) rotate by the full curl and with the opposite sign; a
+//! rigid turn would rotate S twice as far and backwards. The array of paper eq. (20) is the transpose of the
+//! gradient used here.
 //!
 //! # Source
 //!
@@ -19,7 +22,8 @@
 /// A 3 × 3 array, rows first.
 pub type Tensor3 = [[f64; 3]; 3];
 
-/// Spin \\( W = \tfrac12 (\nabla U - \nabla U^T) \\) [1/s] of a velocity gradient \\( \partial U_k/\partial x_l \\) [1/s].
+/// Spin \\( W = \tfrac12 (\nabla U - \nabla U^T) \\) [1/s] of a velocity gradient
+/// \\( \partial U_k/\partial x_l \\) [1/s].
 #[inline]
 pub fn spin(velocity_gradient: &Tensor3) -> Tensor3 {
     let g = velocity_gradient;
@@ -60,7 +64,8 @@ pub fn rotate(deviator: &Tensor3, spin: &Tensor3, time_step: f64) -> Tensor3 {
     std::array::from_fn(|k| std::array::from_fn(|l| (0..3).map(|n| rs[k][n] * r[l][n]).sum()))
 }
 
-/// The Cayley rotation: with \\( A = \tfrac12 \tau W \\) of axial vector a, \\( R = I + 2 (A + A^2)/(1 + a^2) \\).
+/// The Cayley rotation: with \\( A = \tfrac12 \tau W \\) of axial vector a,
+/// \\( R = I + 2 (A + A^2)/(1 + a^2) \\).
 #[inline]
 fn rotation(spin: &Tensor3, time_step: f64) -> Tensor3 {
     let half = 0.5 * time_step;
@@ -77,7 +82,8 @@ fn rotation(spin: &Tensor3, time_step: f64) -> Tensor3 {
     })
 }
 
-/// [`rotate`] in plane strain, turning about z: \\( (S_{xx}, S_{yy}, S_{xy}) \\) [Pa] by \\( W_{yx} \tau \\) [rad].
+/// [`rotate`] in plane strain, turning about z: \\( (S_{xx}, S_{yy}, S_{xy}) \\) [Pa] by \\( W_{yx} \tau \\)
+/// [rad].
 ///
 /// \\( S_{zz} \\) and the sum \\( S_{xx} + S_{yy} \\) stay as they are.
 #[inline]

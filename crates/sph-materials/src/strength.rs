@@ -3,12 +3,12 @@
 //! Elastic rate (Hooke with the Jaumann rate of [`crate::spin`], paper eqs. (4), (26)):
 //! \\( \dot S = 2G\,(D - \tfrac13 \mathrm{tr}(D) I) + W S - S W \\).
 //!
-//! Yield: \\( \sigma_{vM} = \sqrt{\tfrac32 S{:}S} \\) with **all** components of S, \\( S_{zz} \\) too, may not pass \\( Y \\);
-//! radial return \\( S \leftarrow S \min(1, Y/\sigma_{vM}) \\). In uniaxial strain the deviator saturates at
-//! \\( |S_{xx}| = 2Y/3 \\).
+//! Yield: \\( \sigma_{vM} = \sqrt{\tfrac32 S{:}S} \\) with **all** components of S, \\( S_{zz} \\) too, may not
+//! pass \\( Y \\); radial return \\( S \leftarrow S \min(1, Y/\sigma_{vM}) \\). In uniaxial strain the deviator
+//! saturates at \\( |S_{xx}| = 2Y/3 \\).
 //!
-//! Differences from the source: its expression of \\( \sigma_{vM} \\) leaves out \\( S_{zz} \\), which would be plane stress; plane
-//! strain is what is computed.
+//! Differences from the source: its expression of \\( \sigma_{vM} \\) leaves out \\( S_{zz} \\), which would be
+//! plane stress; plane strain is what is computed.
 //!
 //! # Validity
 //!

@@ -2,13 +2,13 @@
 //!
 //! \\[ P = c_0^2 (\rho - \rho_0) \\]
 //!
-//! The energy has no part in it; the thermodynamic sound speed is \\( c_0 \\) at every density, the quasi-acoustic one
-//! \\( c_0 \sqrt{\rho_0/\rho} \\).
+//! The energy has no part in it; the thermodynamic sound speed is \\( c_0 \\) at every density, the
+//! quasi-acoustic one \\( c_0 \sqrt{\rho_0/\rho} \\).
 //!
 //! # Validity
 //!
-//! All positive densities as a formula, with \\( P \to -\rho_0 c_0^2 \\) for \\( \rho \to 0 \\). As physics: small density
-//! changes, sound waves.
+//! All positive densities as a formula, with \\( P \to -\rho_0 c_0^2 \\) for \\( \rho \to 0 \\). As physics:
+//! small density changes, sound waves.
 //!
 //! # Source
 //!

@@ -2,13 +2,14 @@
 //!
 //! \\[ P = B \ln(\rho/\rho_0) \\]
 //!
-//! The energy has no part in it; \\( c_b^2 = B/\rho \\) exactly, so the quasi-acoustic and the thermodynamic sound speed
-//! agree. Together with logarithmic strain it makes the elastic-plastic waves of [`crate::hugoniot`] solvable by hand.
+//! The energy has no part in it; \\( c_b^2 = B/\rho \\) exactly, so the quasi-acoustic and the thermodynamic
+//! sound speed agree. Together with logarithmic strain it makes the elastic-plastic waves of
+//! [`crate::hugoniot`] solvable by hand.
 //!
 //! # Validity
 //!
-//! All positive densities as a formula. As physics: strains of a few percent, where the rise of the bulk modulus with
-//! pressure and the heat of the shock do not count.
+//! All positive densities as a formula. As physics: strains of a few percent, where the rise of the bulk
+//! modulus with pressure and the heat of the shock do not count.
 //!
 //! # Source
 //!

@@ -3,22 +3,23 @@
 //! \\[ P(\rho, e) = P_{ref} + \gamma \rho\, (e - e_{ref}), \qquad x = \rho_0/\rho, \quad \eta = 1 - x \\]
 //!
 //! * compression, \\( x \le 1 \\): \\( P_{ref} = \rho_0 c_a^2 \eta / (1 - s_a \eta)^2 \\),
-//!   \\( e_{ref} = \tfrac12 [c_a \eta / (1 - s_a \eta)]^2 \\): the Rankine-Hugoniot states \\( P = \rho_0 u_s u_p \\),
-//!   \\( e = u_p^2/2 \\);
+//!   \\( e_{ref} = \tfrac12 [c_a \eta / (1 - s_a \eta)]^2 \\): the Rankine-Hugoniot states
+//!   \\( P = \rho_0 u_s u_p \\), \\( e = u_p^2/2 \\);
 //! * expansion, \\( x > 1 \\): \\( P_{ref} = \rho_0 c_a^2 \eta \\), \\( e_{ref} = \tfrac12 c_a^2 \eta^2 \\).
 //!
 //! \\( P \\) and \\( \partial P/\partial\rho \\) are continuous at \\( x = 1 \\).
 //!
-//! Differences from the source: paper eq. (6) prints \\( P_{ref} \\) without the square in the denominator; that would not be
-//! the Hugoniot which \\( e_{ref} \\) belongs to.
+//! Differences from the source: paper eq. (6) prints \\( P_{ref} \\) without the square in the denominator;
+//! that would not be the Hugoniot which \\( e_{ref} \\) belongs to.
 //!
 //! # Validity
 //!
-//! Singular where \\( 1 - s_a \eta \to 0 \\), that is at \\( \rho = \rho_0 s_a/(s_a - 1) \\) (3 ρ0 for the copper of the
-//! library) if \\( s_a > 1 \\): see [`MieGruneisen::density_limit`]. The linear Hugoniot itself is a fit to data, for metals
-//! good to particle velocities of a few km/s. \\( \gamma \\) is constant, \\( \gamma\rho \\) is not; melting and vaporization
-//! are absent, so strongly expanded hot states (\\( x \gtrsim 1.1 \\)) are only qualitative; with the
-//! copper of the library at e = 0, \\( c_b^2 \\) turns negative below \\( \rho \approx \rho_0/3 \\).
+//! Singular where \\( 1 - s_a \eta \to 0 \\), that is at \\( \rho = \rho_0 s_a/(s_a - 1) \\) (3 ρ0 for the
+//! copper of the library) if \\( s_a > 1 \\): see [`MieGruneisen::density_limit`]. The linear Hugoniot itself
+//! is a fit to data, for metals good to particle velocities of a few km/s. \\( \gamma \\) is constant,
+//! \\( \gamma\rho \\) is not; melting and vaporization are absent, so strongly expanded hot states
+//! (\\( x \gtrsim 1.1 \\)) are only qualitative; with the copper of the library at e = 0, \\( c_b^2 \\) turns
+//! negative below \\( \rho \approx \rho_0/3 \\).
 //!
 //! # Source
 //!

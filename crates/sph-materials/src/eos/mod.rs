@@ -1,22 +1,23 @@
 //! Equations of state \\( P(\rho, e) \\) of a solid: one model a file, behind one closed enum.
 //!
 //! Every model here is linear in the specific internal energy at fixed density,
-//! \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), with \\( a = \partial P / \partial e|_\rho \\); the shock solutions of
-//! [`crate::hugoniot`] rest on that.
+//! \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), with \\( a = \partial P / \partial e|_\rho \\); the shock
+//! solutions of [`crate::hugoniot`] rest on that.
 //!
 //! Two sound speeds belong to each model:
 //!
 //! * thermodynamic, exact: \\( c_b^2 = \partial P/\partial\rho|_e + (P/\rho^2)\, \partial P/\partial e|_\rho \\);
-//! * quasi-acoustic: \\( c_b^2 = B/\rho \\) with the constant \\( B \\) of the undisturbed material (Rublev & Murzov,
-//!   arXiv 2410.14646, text below paper eq. (8)).
+//! * quasi-acoustic: \\( c_b^2 = B/\rho \\) with the constant \\( B \\) of the undisturbed material (Rublev &
+//!   Murzov, arXiv 2410.14646, text below paper eq. (8)).
 //!
 //! The square of the thermodynamic speed may become negative: in strong expansion, where the model leaves the
-//! domain in which matter is stable. It is returned as it is; [`crate::Material::bulk_sound_speed`] decides what to do.
+//! domain in which matter is stable. It is returned as it is; [`crate::Material::bulk_sound_speed`] decides
+//! what to do.
 //!
 //! # Adding a model
 //!
-//! One file with the four functions and the documentation that the others have, one variant, one arm in each `match`
-//! below, one row in the property tests (`tests/prop_eos.rs`).
+//! One file with the four functions and the documentation that the others have, one variant, one arm in each
+//! `match` below, one row in the property tests (`tests/prop_eos.rs`).
 
 mod linear;
 mod linear_gamma;
@@ -92,8 +93,8 @@ impl EquationOfState {
 
     /// Density [kg/m³] below which the formula holds; infinite where it has no singular point.
     ///
-    /// [`EquationOfState::pressure`] does not check it: past a singular density the formula gives finite, meaningless
-    /// numbers.
+    /// [`EquationOfState::pressure`] does not check it: past a singular density the formula gives finite,
+    /// meaningless numbers.
     pub fn density_limit(&self, rho0: f64) -> f64 {
         match self {
             Self::MieGruneisen(model) => model.density_limit(rho0),

@@ -8,24 +8,25 @@
 //! # Equations
 //!
 //! Uniaxial strain, Hooke's law in logarithmic strain: \\( S_{xx} = -\tfrac43 G \ln(\rho/\rho_0) \\) until
-//! \\( |S_{xx}| = \tfrac23 Y \\) at \\( \rho_{ec} = \rho_0 e^{Y/2G} \\) (paper eqs. (30), (31)), constant after. Every wave obeys
-//! the jump conditions of [`crate::jump`]. Precursor: \\( D_{ec} = V_0 \sqrt{\Sigma_{ec}/(V_0 - V_{ec})} \\). The plastic wave
-//! starts from the precursor's state, not from rest.
+//! \\( |S_{xx}| = \tfrac23 Y \\) at \\( \rho_{ec} = \rho_0 e^{Y/2G} \\) (paper eqs. (30), (31)), constant
+//! after. Every wave obeys the jump conditions of [`crate::jump`]. Precursor:
+//! \\( D_{ec} = V_0 \sqrt{\Sigma_{ec}/(V_0 - V_{ec})} \\). The plastic wave starts from the precursor's state,
+//! not from rest.
 //!
 //! Differences from the source: its closed form of \\( D_{ec} \\) lacks the \\( 1/\rho_0 \\) under the root.
 //!
 //! # When which structure stands
 //!
-//! \\( u_p \le u_{ec} \\): one elastic wave. Above, as long as the plastic wave is slower than \\( D_{ec} \\): two waves. When it
-//! would be as fast or faster: one overdriven shock from rest straight to the yielded state. At the threshold both
-//! descriptions give the same state, since the three points lie on one Rayleigh line.
+//! \\( u_p \le u_{ec} \\): one elastic wave. Above, as long as the plastic wave is slower than \\( D_{ec} \\):
+//! two waves. When it would be as fast or faster: one overdriven shock from rest straight to the yielded state.
+//! At the threshold both descriptions give the same state, since the three points lie on one Rayleigh line.
 //!
 //! # Validity
 //!
-//! Shocks as discontinuities, heat conduction and rate effects left out; elastic and plastic branch each convex in
-//! \\( V \\), which holds for constant G and every equation of state here in compression. The thermodynamic limit of the
-//! Mie-Grüneisen model with strength is \\( \rho/\rho_0 < 1 + 2/\gamma \\) (without strength the singular point is removable,
-//! and [`principal`] goes on to \\( s_a/(s_a - 1) \\)).
+//! Shocks as discontinuities, heat conduction and rate effects left out; elastic and plastic branch each convex
+//! in \\( V \\), which holds for constant G and every equation of state here in compression. The thermodynamic
+//! limit of the Mie-Grüneisen model with strength is \\( \rho/\rho_0 < 1 + 2/\gamma \\) (without strength the
+//! singular point is removable, and [`principal`] goes on to \\( s_a/(s_a - 1) \\)).
 
 mod principal;
 

@@ -1,8 +1,8 @@
 //! Named materials: one RON file each, every number with its unit and source.
 //!
 //! The files lie in `src/library/` and are part of the compiled crate. A number is written as
-//! `(value: 43.0, unit: "GPa", source: "…")`; units are converted to SI while reading, and a unit that does not measure
-//! its quantity is an error. The tests read every file.
+//! `(value: 43.0, unit: "GPa", source: "…")`; units are converted to SI while reading, and a unit that does not
+//! measure its quantity is an error. The tests read every file.
 //!
 //! | name | for |
 //! |---|---|

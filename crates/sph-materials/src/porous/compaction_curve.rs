@@ -2,23 +2,24 @@
 //!
 //! \\[ \alpha(P) = 1 + (\alpha_1 - 1)\, e^{-a (P - P_1)}, \qquad \alpha = \rho_s/\rho \\]
 //!
-//! with \\( P \\) the longitudinal stress behind the wave, \\( \rho_s \\) the density of the solid at that stress and energy, and
-//! \\( \alpha_1 \\) the distension behind the precursor of stress \\( P_1 \\) and speed \\( D_1 \\):
-//! \\( u_1 = P_1/(\rho_{00} D_1) \\), \\( \rho_1 = \rho_{00} D_1/(D_1 - u_1) \\), \\( e_1 = \tfrac12 u_1^2 \\). For the main wave
-//! \\( e = e_1 + \tfrac12 (P + P_1)(V_1 - V) \\) with \\( V = \alpha/\rho_s \\), and \\( P(\rho_s, e) = P \\) of the solid's own equation of
-//! state (strengthless) closes the set; then \\( u_s - u_1 = V_1 \sqrt{(P - P_1)/(V_1 - V)} \\).
+//! with \\( P \\) the longitudinal stress behind the wave, \\( \rho_s \\) the density of the solid at that
+//! stress and energy, and \\( \alpha_1 \\) the distension behind the precursor of stress \\( P_1 \\) and speed
+//! \\( D_1 \\): \\( u_1 = P_1/(\rho_{00} D_1) \\), \\( \rho_1 = \rho_{00} D_1/(D_1 - u_1) \\),
+//! \\( e_1 = \tfrac12 u_1^2 \\). For the main wave \\( e = e_1 + \tfrac12 (P + P_1)(V_1 - V) \\) with
+//! \\( V = \alpha/\rho_s \\), and \\( P(\rho_s, e) = P \\) of the solid's own equation of state (strengthless)
+//! closes the set; then \\( u_s - u_1 = V_1 \sqrt{(P - P_1)/(V_1 - V)} \\).
 //!
 //! Velocities are relative to the undisturbed medium, as they are measured.
 //!
 //! # Validity
 //!
-//! From the precursor's stress to the end of the data, for pressed copper powder 0.14 to 3.5 GPa; outside it is an error.
-//! The amplitude and speed of the precursor are given to two digits.
+//! From the precursor's stress to the end of the data, for pressed copper powder 0.14 to 3.5 GPa; outside it is
+//! an error. The amplitude and speed of the precursor are given to two digits.
 //!
 //! # Source
 //!
-//! R. R. Boade, "Principal Hugoniot, second-shock Hugoniot, and release behavior of pressed copper powder", J. Appl.
-//! Phys. 41 (1970) 4542-4551. Form of P(ρ, e, α): W. Herrmann, J. Appl. Phys. 40 (1969) 2490-2499.
+//! R. R. Boade, "Principal Hugoniot, second-shock Hugoniot, and release behavior of pressed copper powder", J.
+//! Appl. Phys. 41 (1970) 4542-4551. Form of P(ρ, e, α): W. Herrmann, J. Appl. Phys. 40 (1969) 2490-2499.
 
 use super::{PorousMedium, Precursor};
 use crate::error::HugoniotError;
@@ -41,7 +42,8 @@ pub struct CompactionCurve {
 }
 
 impl CompactionCurve {
-    /// Pressed copper powder of Boade (1970): 6400 kg/m³, precursor 1.4 kbar at 1.9 km/s, 0.254 per kbar, data to 35 kbar.
+    /// Pressed copper powder of Boade (1970): 6400 kg/m³, precursor 1.4 kbar at 1.9 km/s, 0.254 per kbar, data
+    /// to 35 kbar.
     ///
     /// # Errors
     ///
@@ -50,8 +52,8 @@ impl CompactionCurve {
         Self::new(solid, 6400.0, (1.4 * KILOBAR, 1900.0), 0.254 / KILOBAR, 35.0 * KILOBAR)
     }
 
-    /// A curve from the initial density [kg/m³], stress [Pa] and speed [m/s] of the precursor, decay a [1/Pa], and the
-    /// greatest stress of the data [Pa].
+    /// A curve from the initial density [kg/m³], stress [Pa] and speed [m/s] of the precursor, decay a [1/Pa],
+    /// and the greatest stress of the data [Pa].
     ///
     /// # Errors
     ///
@@ -91,7 +93,8 @@ impl CompactionCurve {
         1.0 + (self.precursor_distension() - 1.0) * (-self.decay * (stress - self.precursor.pressure)).exp()
     }
 
-    /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that density.
+    /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that
+    /// density.
     fn solid_density(&self, pressure: f64, energy: impl Fn(f64) -> f64) -> f64 {
         let solid = &self.medium.solid;
         let is_dense_enough = |density: f64| solid.pressure(density, energy(density)) >= pressure;

@@ -6,21 +6,23 @@
 //!
 //! # Shut pores
 //!
-//! A medium of density \\( \rho_{00} = \rho_0/m \\) carries a precursor stress \\( \sigma_{HEL} \\). The compaction wave leaves solid of
-//! density \\( \rho \\), velocity \\( u_p \\) and stress \\( \Sigma = -\sigma_{xx} \\):
+//! A medium of density \\( \rho_{00} = \rho_0/m \\) carries a precursor stress \\( \sigma_{HEL} \\). The
+//! compaction wave leaves solid of density \\( \rho \\), velocity \\( u_p \\) and stress
+//! \\( \Sigma = -\sigma_{xx} \\):
 //!
 //! \\[ \rho_{00} u_s = \rho (u_s - u_p), \quad \Sigma = \sigma_{HEL} + \rho_{00} u_s u_p, \quad
 //!    e = \tfrac12 (\sigma_{HEL} + \Sigma)(V_{00} - V), \quad P(\rho, e) = \Sigma - s. \\]
 //!
-//! Four equations for \\( u_s, \rho, \Sigma, e \\), except for \\( s = -S_{xx} \\), which they leave open: behind a shut front the
-//! solid was worked through in all directions, and its mean deviator is anything from zero to that of uniaxial
-//! compression at yield. These are the two ends of [`PorousMedium::shock_velocity_range`]:
+//! Four equations for \\( u_s, \rho, \Sigma, e \\), except for \\( s = -S_{xx} \\), which they leave open:
+//! behind a shut front the solid was worked through in all directions, and its mean deviator is anything from
+//! zero to that of uniaxial compression at yield. These are the two ends of
+//! [`PorousMedium::shock_velocity_range`]:
 //!
 //! * lower end, [`ShearBehind::None`]: \\( s = 0 \\);
 //! * upper end, [`ShearBehind::Yielded`]: \\( s = \tfrac23 Y \\).
 //!
-//! For the copper of the library, m = 1.3514 (that of a cell of 20 × 20 particles less 104) and a standing precursor of
-//! 0.20 GPa:
+//! For the copper of the library, m = 1.3514 (that of a cell of 20 × 20 particles less 104) and a standing
+//! precursor of 0.20 GPa:
 //!
 //! | u_p, m/s | lower, m/s | upper, m/s |
 //! |---|---|---|
@@ -29,29 +31,32 @@
 //! | 250 | 939.5 | 943.7 |
 //! | 300 | 1117.7 | 1122.5 |
 //!
-//! Such a range is as wide as the deviator is unknown, and no wider: the porosity moves both ends by -0.2 % for 0.001
-//! more in m (m = 1.35 exactly: +0.2 to +0.3 %), the precursor stress by -0.17 % for 0.2 GPa. State both with a number that is quoted.
+//! Such a range is as wide as the deviator is unknown, and no wider: the porosity moves both ends by -0.2 % for
+//! 0.001 more in m (m = 1.35 exactly: +0.2 to +0.3 %), the precursor stress by -0.17 % for 0.2 GPa. State both
+//! with a number that is quoted.
 //!
 //! # Which state lies ahead
 //!
-//! [`Precursor::Standing`] puts the stress ahead of the wave at rest and at \\( \rho_{00} \\): the source's assumption ("the
-//! density change in the elastic precursor is small"), and the frame of a window whose inlet imposes one velocity. u_s and
-//! u_p are then relative to the matter behind the precursor. [`Precursor::Moving`] adds the precursor's own velocity
-//! \\( \sigma_{HEL}/(\rho_{00} D) \\) (13 m/s for 0.22 GPa at 2.6 km/s) and density; velocities are then relative to the
-//! undisturbed medium, and at the same u_p the wave is slower by 20 to 30 m/s. [`Jump::shock_velocity`] and
-//! [`Jump::velocity_jump`] of such a wave compare with the former.
+//! [`Precursor::Standing`] puts the stress ahead of the wave at rest and at \\( \rho_{00} \\): the source's
+//! assumption ("the density change in the elastic precursor is small"), and the frame of a window whose inlet
+//! imposes one velocity. u_s and u_p are then relative to the matter behind the precursor.
+//! [`Precursor::Moving`] adds the precursor's own velocity \\( \sigma_{HEL}/(\rho_{00} D) \\) (13 m/s for 0.22
+//! GPa at 2.6 km/s) and density; velocities are then relative to the undisturbed medium, and at the same u_p
+//! the wave is slower by 20 to 30 m/s. [`Jump::shock_velocity`] and [`Jump::velocity_jump`] of such a wave
+//! compare with the former.
 //!
 //! # Validity
 //!
-//! The conditions hold once the pores are shut, for the source's copper from \\( u_p \approx 150 \\) m/s on; nothing here can
-//! tell that they are. With open pores the medium behind is lighter, and by mass conservation u_s lies above the
-//! range: it must then be measured or computed. Compaction is normal (stress rises with density) for
-//! \\( m < 1 + 2/\gamma \\); beyond that the heat of compaction wins, and it is an error.
+//! The conditions hold once the pores are shut, for the source's copper from \\( u_p \approx 150 \\) m/s on;
+//! nothing here can tell that they are. With open pores the medium behind is lighter, and by mass conservation
+//! u_s lies above the range: it must then be measured or computed. Compaction is normal (stress rises with
+//! density) for \\( m < 1 + 2/\gamma \\); beyond that the heat of compaction wins, and it is an error.
 //!
 //! # Source
 //!
-//! Jump conditions and the standing precursor: Rublev & Murzov, arXiv 2410.14646, section 4. Anomalous compaction:
-//! Ya. B. Zel'dovich & Yu. P. Raizer, Physics of Shock Waves and High-Temperature Hydrodynamic Phenomena, ch. XI.
+//! Jump conditions and the standing precursor: Rublev & Murzov, arXiv 2410.14646, section 4. Anomalous
+//! compaction: Ya. B. Zel'dovich & Yu. P. Raizer, Physics of Shock Waves and High-Temperature Hydrodynamic
+//! Phenomena, ch. XI.
 
 mod compaction_curve;
 
@@ -113,8 +118,8 @@ impl PorousMedium {
     ///
     /// # Errors
     ///
-    /// A density that is not less than the solid's, a porosity from which on compaction is anomalous, or a precursor with
-    /// impossible numbers.
+    /// A density that is not less than the solid's, a porosity from which on compaction is anomalous, or a
+    /// precursor with impossible numbers.
     pub fn new(solid: &Material, initial_density: f64, precursor: Precursor) -> Result<Self, HugoniotError> {
         let solid_density = solid.reference_density;
         if !(initial_density > 0.0 && initial_density < solid_density) {
@@ -152,7 +157,8 @@ impl PorousMedium {
         self.solid.reference_density / self.initial_density
     }
 
-    /// Porosity from which on compaction is anomalous, \\( 1 + 2\rho_0/a(\rho_0) \\), for Mie-Grüneisen \\( 1 + 2/\gamma \\) [1].
+    /// Porosity from which on compaction is anomalous, \\( 1 + 2\rho_0/a(\rho_0) \\), for Mie-Grüneisen
+    /// \\( 1 + 2/\gamma \\) [1].
     pub fn porosity_limit(&self) -> f64 {
         let rho0 = self.solid.reference_density;
         1.0 + 2.0 * rho0 / self.solid.equation_of_state.pressure_energy_slope(rho0)
@@ -201,8 +207,8 @@ impl PorousMedium {
     ///
     /// # Errors
     ///
-    /// A piston that does not push or is slower than the matter behind the precursor; a wave that is not slower than its precursor; a
-    /// yielded solid behind that would be under mean tension; no state at all.
+    /// A piston that does not push or is slower than the matter behind the precursor; a wave that is not slower
+    /// than its precursor; a yielded solid behind that would be under mean tension; no state at all.
     pub fn shut_pores(&self, piston_velocity: f64, shear: ShearBehind) -> Result<Jump, HugoniotError> {
         let ahead = self.state_ahead_of(piston_velocity)?;
         let s = self.shear_stress(shear)?;
@@ -215,7 +221,8 @@ impl PorousMedium {
         self.slower_than_precursor(jump)
     }
 
-    /// Shock velocities u_s [m/s], relative to the matter ahead, with and without deviator behind a wave that shuts the pores.
+    /// Shock velocities u_s [m/s], relative to the matter ahead, with and without deviator behind a wave that
+    /// shuts the pores.
     ///
     /// # Errors
     ///
@@ -225,10 +232,12 @@ impl PorousMedium {
         Ok(ShockVelocityRange { lower: end(ShearBehind::None)?, upper: end(ShearBehind::Yielded)? })
     }
 
-    /// The compaction wave of an incompressible solid (snow-plow): \\( u_s = u_p\, m/(m - 1) \\) if nothing runs ahead.
+    /// The compaction wave of an incompressible solid (snow-plow): \\( u_s = u_p\, m/(m - 1) \\) if nothing
+    /// runs ahead.
     ///
-    /// u_s lies above that of the compressible solid as long as the latter is denser than \\( \rho_0 \\) behind the wave. The
-    /// stored energy is that of the jump condition; the equation of state is not asked, and `pressure` is the longitudinal stress.
+    /// u_s lies above that of the compressible solid as long as the latter is denser than \\( \rho_0 \\) behind
+    /// the wave. The stored energy is that of the jump condition; the equation of state is not asked, and
+    /// `pressure` is the longitudinal stress.
     ///
     /// # Errors
     ///

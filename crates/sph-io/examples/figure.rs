@@ -1,8 +1,10 @@
 //! Makes sample figures in a folder: `cargo run -p sph-io --example figure -- FOLDER`.
 //!
-//! A u_s-u_p plot with error bars, a convergence plot with slopes and a stack of profiles. The numbers are invented.
+//! A u_s-u_p plot with error bars, a convergence plot with slopes, a stack of profiles and a field image. The numbers
+//! are invented.
 
 use sph_io::IoError;
+use sph_io::field_image::{ColorMap, Field, FieldImage};
 use sph_io::plot::{Annotation, Axis, Figure, Panel, Series};
 use std::path::Path;
 
@@ -13,6 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (name, figure) in [("hugoniot", hugoniot()), ("convergence", convergence()), ("profile", profile())] {
         write_both(&figure, folder, name)?;
     }
+    field_image().write_png(folder.join("field.png"))?;
     Ok(())
 }
 
@@ -84,4 +87,37 @@ fn profile() -> Figure {
             curve(&x, |x| wave(x, 250.0, 13.0)),
             curve(&x, |x| step(x, 250.0, 13.0)),
         ))
+}
+
+/// A window of 560 by 20 µm with round pores that close behind a front.
+fn field_image() -> FieldImage {
+    let (length, height, spacing) = (560.0, 20.0, 0.8);
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for column in 0..700 {
+        for row in 0..25 {
+            let place = ((f64::from(column) + 0.5) * spacing, (f64::from(row) + 0.5) * spacing);
+            let is_ahead = place.0 > 0.5 * length;
+            let to_pore = |cx: f64, cy: f64| (place.0 % 20.0 - cx).hypot(place.1 - cy);
+            if !(is_ahead && to_pore(5.0, 5.0).min(to_pore(15.0, 15.0)) < 4.06) {
+                x.push(place.0);
+                y.push(place.1);
+            }
+        }
+    }
+    let wave = |x: f64| 0.5 * (1.0 - ((x - 0.5 * length) / 5.0).tanh());
+    let ripple = |x: f64, y: f64| (0.9 * x).sin() * (0.7 * y).cos();
+    let density: Vec<f64> =
+        x.iter().zip(&y).map(|(&x, &y)| 8.93 + wave(x) * (0.1 + 0.03 * ripple(x, y))).collect();
+    let velocity: Vec<f64> =
+        x.iter().zip(&y).map(|(&x, &y)| 250.0 * wave(x) + 20.0 * wave(x) * ripple(y, x)).collect();
+    let stress: Vec<f64> =
+        x.iter().zip(&y).map(|(&x, &y)| -1.5 * wave(x) + 0.3 * ripple(x, y) - 0.1).collect();
+    let n = x.len();
+    FieldImage::new("u_p = 250 m/s, 0.66 µs", (0.0, length), (0.0, height))
+        .with_particles(x, y, vec![spacing; n])
+        .with_field(Field::new("ρ [g/cm^3]", density, ColorMap::Sequential))
+        .with_field(Field::new("u_x [m/s]", velocity, ColorMap::Heat))
+        .with_field(Field::new("σ_xx [GPa]", stress, ColorMap::Diverging))
+        .with_strips(2)
+        .with_periods(2)
 }

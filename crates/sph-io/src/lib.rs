@@ -7,6 +7,7 @@ pub mod atomic;
 mod color;
 mod draw;
 mod error;
+pub mod field_image;
 pub mod plot;
 pub mod table;
 

@@ -77,27 +77,63 @@ fn tick_places(axis: &AxisPlan) -> impl Iterator<Item = (f64, f64)> {
 
 /// The numbers below the x axis, and its label.
 pub(crate) fn draw_x_words(canvas: &mut Canvas, area: Rect, axis: &AxisPlan) {
+    draw_x_numbers(canvas, area, axis);
+    let middle = 0.5 * (area.left + area.right);
+    let y = area.bottom + 2.0 * GAP + 0.8 * TICK_SIZE + LABEL_SIZE + 1.0;
+    canvas.text(&axis.full_label(), Place::new(middle, y, LABEL_SIZE, Anchor::Middle));
+}
+
+/// The numbers below the x axis.
+pub(crate) fn draw_x_numbers(canvas: &mut Canvas, area: Rect, axis: &AxisPlan) {
     let y = area.bottom + GAP + 0.8 * TICK_SIZE;
     for (value, word) in &axis.ticks.major {
         if let Some(x) = axis.scale.place(*value) {
             canvas.text(word, Place::new(x, y, TICK_SIZE, Anchor::Middle));
         }
     }
-    let middle = 0.5 * (area.left + area.right);
-    let y = y + GAP + LABEL_SIZE + 1.0;
-    canvas.text(&axis.full_label(), Place::new(middle, y, LABEL_SIZE, Anchor::Middle));
 }
 
 /// The numbers left of the y axis, and its label at a distance of `tick_width` (that of the widest panel in a stack).
 pub(crate) fn draw_y_words(canvas: &mut Canvas, area: Rect, axis: &AxisPlan, tick_width: f64) {
+    draw_y_numbers(canvas, area, axis);
+    draw_y_label(canvas, area, axis, tick_width);
+}
+
+/// The numbers left of the y axis.
+pub(crate) fn draw_y_numbers(canvas: &mut Canvas, area: Rect, axis: &AxisPlan) {
     for (value, word) in &axis.ticks.major {
         if let Some(y) = axis.scale.place(*value) {
             let place = Place::new(area.left - GAP, y + 0.36 * TICK_SIZE, TICK_SIZE, Anchor::End);
             canvas.text(word, place);
         }
     }
+}
+
+/// The label of the y axis, at the middle of `area`.
+pub(crate) fn draw_y_label(canvas: &mut Canvas, area: Rect, axis: &AxisPlan, tick_width: f64) {
     let x = area.left - tick_width - 2.2 * GAP - 2.0;
     let middle = 0.5 * (area.top + area.bottom);
     let place = Place { upward: true, ..Place::new(x, middle, LABEL_SIZE, Anchor::Middle) };
     canvas.text(&axis.full_label(), place);
+}
+
+/// The frame with ticks outward at its left and lower side, for panels whose inside is painted over.
+pub(crate) fn draw_outer_frame(canvas: &mut Canvas, area: Rect, x: &AxisPlan, y: &AxisPlan) {
+    for (place, length) in tick_places(x) {
+        canvas.line((place, area.bottom), (place, area.bottom + 0.8 * length), FRAME);
+    }
+    for (place, length) in tick_places(y) {
+        canvas.line((area.left, place), (area.left - 0.8 * length, place), FRAME);
+    }
+    canvas.outline(area, FRAME);
+}
+
+/// A tick outward at the right side of a color bar.
+pub(crate) fn draw_tick_right(canvas: &mut Canvas, right: f64, y: f64) {
+    canvas.line((right, y), (right + 0.8 * MAJOR_LENGTH, y), FRAME);
+}
+
+/// A frame without ticks.
+pub(crate) fn draw_outline(canvas: &mut Canvas, area: Rect) {
+    canvas.outline(area, FRAME);
 }

@@ -1,0 +1,157 @@
+//! `hugoniot check`: what a case file resolves to, before anything is run.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use crate::config::Case;
+use crate::config::units::{LengthKind, PressureKind, VelocityKind, show, significant};
+use crate::estimate::{self, PointEstimate};
+use crate::microstructure::{self, Sample};
+
+/// A resolved case with what its run will need.
+#[derive(Debug, Serialize)]
+pub struct Check {
+    /// The case in SI.
+    pub case: Case,
+    /// Porosity that whole particles reach [-].
+    pub porosity_reached: f64,
+    /// Density ρ00 of the medium [kg/m³].
+    pub bulk_density: f64,
+    /// Particles in a cell.
+    pub particles_per_cell: usize,
+    /// Distance from a pore's center of the farthest point removed [m]; `None` without pores.
+    pub cut_radius: Option<f64>,
+    /// What each point will need.
+    pub points: Vec<PointEstimate>,
+    /// Cores that the estimate is for.
+    pub threads: usize,
+    /// Expected time of all points [s].
+    pub expected_seconds: f64,
+    /// Expected memory [bytes].
+    pub expected_bytes: f64,
+}
+
+impl Check {
+    /// Resolves the case further: sample, particles, memory, time on `threads` cores.
+    pub fn new(case: Case, threads: usize) -> Self {
+        let sample: Sample = microstructure::sample(&case.medium, case.material.reference_density);
+        let points: Vec<_> = case.points.iter().map(|&u| estimate::point(&case, &sample, u)).collect();
+        let (expected_seconds, expected_bytes) = estimate::total(&points, threads);
+        Self {
+            porosity_reached: sample.porosity,
+            bulk_density: sample.bulk_density(),
+            particles_per_cell: sample.particles.len(),
+            cut_radius: (sample.cut.0 > 0.0).then_some(sample.cut.0),
+            points,
+            threads,
+            expected_seconds,
+            expected_bytes,
+            case,
+        }
+    }
+
+    /// The text for people.
+    pub fn to_text(&self) -> String {
+        let (mut out, medium, scheme) = (String::new(), &self.case.medium, &self.case.scheme);
+        let mut line = |name: &str, text: String| _ = writeln!(out, "{name:<20} {text}");
+        line("case", self.case.name.clone());
+        line("material", self.material_text());
+        let pores = format!("{:?}, radius {}", medium.pores, show::<LengthKind>(medium.radius));
+        line("medium", format!("cell {}, pores {pores}", show::<LengthKind>(medium.cell)));
+        let (wanted, reached) = (significant(medium.porosity), significant(self.porosity_reached));
+        line(
+            "porosity",
+            format!(
+                "{reached} reached, {wanted} asked for; bulk density {} kg/m3",
+                significant(self.bulk_density)
+            ),
+        );
+        let size = show::<LengthKind>(medium.particle_size);
+        line(
+            "particles",
+            format!("D = {size}, {:?} packing, {} a cell", medium.packing, self.particles_per_cell),
+        );
+        let volume = if scheme.volume_consistency.is_some() { "on" } else { "off" };
+        line(
+            "scheme",
+            format!(
+                "{:?}, {:?}, θ = {}, CFL {}",
+                scheme.scheme, scheme.limiter, scheme.smoothing, scheme.cfl
+            ),
+        );
+        line("surfaces, volume", format!("{:?}, volume consistency {volume}", scheme.surface));
+        line("results", self.case.output.directory.clone());
+        out.push('\n');
+        out.push_str(&self.points_text());
+        let time = duration(self.expected_seconds);
+        let memory = significant((self.expected_bytes / 1e5).round() / 10.0);
+        _ = writeln!(out, "\nabout {time} on {} core(s), {memory} MB; estimates", self.threads);
+        out
+    }
+
+    fn material_text(&self) -> String {
+        let m = &self.case.material;
+        let speed = m.longitudinal_sound_speed(m.reference_density, 0.0);
+        let (shear, c_l) = (show::<PressureKind>(m.strength.shear_modulus()), show::<VelocityKind>(speed));
+        format!("{}, {} kg/m3, G = {shear}, c_l = {c_l}", m.name, significant(m.reference_density))
+    }
+
+    fn points_text(&self) -> String {
+        let mut out = String::from(
+            "u_p, m/s  u_s about  window, cells  particles  cells fed, least      steps      time\n",
+        );
+        for p in &self.points {
+            _ = writeln!(
+                out,
+                "{:>8}  {:>9.0}  {:>13}  {:>9}  {:>16}  {:>9.0}  {:>8}",
+                significant(p.particle_velocity),
+                p.shock_velocity,
+                p.window_cells,
+                p.particles,
+                p.fed_cells,
+                p.steps,
+                duration(p.seconds)
+            );
+        }
+        out
+    }
+}
+
+/// A duration as people say it.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => format!("{s:.1} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 48.0 * 3600.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86400.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config;
+
+    #[test]
+    fn the_shipped_case_tells_what_it_is() {
+        let case =
+            config::parse(include_str!("../templates/porous-copper.ron"), "porous-copper.ron").unwrap();
+        let check = Check::new(case, 2);
+        let text = check.to_text();
+        for part in ["1.35135 reached, 1.35 asked for", "296 a cell", "TkcHancock", "u_s about"] {
+            assert!(text.contains(part), "{part} is missing in\n{text}");
+        }
+        assert!(check.expected_seconds < 600.0, "the shipped case is to end within ten minutes");
+        assert!(serde_json::to_value(&check).unwrap()["points"].as_array().unwrap().len() == 8);
+    }
+
+    #[test]
+    fn durations_read_well() {
+        assert_eq!(duration(0.25), "0.2 s");
+        assert_eq!(duration(90.0), "90 s");
+        assert_eq!(duration(600.0), "10 min");
+        assert_eq!(duration(9000.0), "2.5 h");
+    }
+}

@@ -1,0 +1,189 @@
+//! A case: everything that a run needs, checked, in SI.
+
+use serde::Serialize;
+use sph_materials::Material;
+
+pub use super::schema::{InletName, KernelName, LimiterName, SchemeName};
+
+/// A case that can be run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Case {
+    /// What it is called in reports.
+    pub name: String,
+    /// The solid between the pores.
+    pub material: Material,
+    /// Cell, pores and particles.
+    pub medium: Medium,
+    /// How the equations are solved.
+    pub scheme: SchemeCase,
+    /// The moving window.
+    pub window: WindowCase,
+    /// Particle velocities u_p [m/s], rising.
+    pub points: Vec<f64>,
+    /// When a point has settled.
+    pub stop: Stop,
+    /// What is written.
+    pub output: Output,
+}
+
+/// Cell, pores and particles.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Medium {
+    /// Edge L of the square periodic cell [m].
+    pub cell: f64,
+    /// Where the pores are.
+    pub pores: Pores,
+    /// Pore radius as given, or as the porosity asks for [m]; zero without pores.
+    pub radius: f64,
+    /// Porosity m = ρ0/ρ00 to reach [-]; 1 without pores.
+    pub porosity: f64,
+    /// Particle size D [m].
+    pub particle_size: f64,
+    /// How particles are packed.
+    pub packing: Packing,
+}
+
+/// Where the pores are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Pores {
+    /// No pores: the solid.
+    None,
+    /// One pore a cell.
+    Square,
+    /// Two pores a cell: one more in the middle of four.
+    CenteredSquare,
+}
+
+impl Pores {
+    /// Pores in a cell.
+    pub fn count(self) -> usize {
+        match self {
+            Pores::None => 0,
+            Pores::Square => 1,
+            Pores::CenteredSquare => 2,
+        }
+    }
+
+    /// Least distance between pore centers, in cell edges.
+    pub fn spacing(self) -> f64 {
+        match self {
+            Pores::None | Pores::Square => 1.0,
+            Pores::CenteredSquare => std::f64::consts::FRAC_1_SQRT_2,
+        }
+    }
+}
+
+/// How particles are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Packing {
+    /// On a square lattice.
+    Square,
+    /// On a hexagonal lattice.
+    Hexagonal,
+}
+
+/// How the equations are solved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SchemeCase {
+    /// Scheme.
+    pub scheme: SchemeName,
+    /// Limiter of the reconstruction.
+    pub limiter: LimiterName,
+    /// Kernel.
+    pub kernel: KernelName,
+    /// θ in h_ij = θ(D_i + D_j) [-].
+    pub smoothing: f64,
+    /// C in the time step C min D/(c_l + |U_rel|) [-].
+    pub cfl: f64,
+    /// What replaces L⁻¹ at free surfaces.
+    pub surface: Surface,
+    /// Relaxation of the density towards the particles' packing.
+    pub volume_consistency: Option<Relaxation>,
+}
+
+/// What replaces L⁻¹ at free surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Surface {
+    /// L⁻¹ everywhere.
+    None,
+    /// L = I where the least eigenvalue of L⁻¹ is below 0.75, or det L below the floor [-].
+    Printed(f64),
+    /// L = I where the least eigenvalue of L is below 0.75, or det L below the floor [-].
+    Intended(f64),
+    /// Eigenvalues of the inverse at most this [-].
+    SpectralCap(f64),
+}
+
+/// Parameters of the density's relaxation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Relaxation {
+    /// h_S / D of the wide kernel [-].
+    pub width: f64,
+    /// κ [-].
+    pub rate: f64,
+    /// Tolerance of ΔS [-].
+    pub tolerance: f64,
+    /// δ [-].
+    pub delta: f64,
+}
+
+/// The moving window.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WindowCase {
+    /// Length in cells; `None`: from u_p, see [`WindowCase::cells_at`].
+    pub cells: Option<usize>,
+    /// Width of the inlet and of each outlet region [D].
+    pub region_width: f64,
+    /// What is imposed at the inlet.
+    pub inlet: InletName,
+}
+
+impl WindowCase {
+    /// Length of the window at u_p [m/s], in cells: 24 to 100 m/s, 12 from 200 m/s on, linear between.
+    ///
+    /// Slow compaction waves are wide: pores close late and the relaxation zone behind the front is long.
+    pub fn cells_at(&self, particle_velocity: f64) -> usize {
+        let automatic = 24.0 - 12.0 * ((particle_velocity - 100.0) / 100.0).clamp(0.0, 1.0);
+        self.cells.unwrap_or(automatic.round() as usize)
+    }
+}
+
+/// When a point has settled.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stop {
+    /// Cells fed before the first block; `None`: the window's length, see [`Stop::startup_at`].
+    pub startup_cells: Option<usize>,
+    /// Cells fed in a block.
+    pub block_cells: usize,
+    /// Successive blocks that must agree.
+    pub blocks: usize,
+    /// Relative agreement of u_s between blocks [-].
+    pub tolerance: f64,
+    /// Cells fed at most.
+    pub max_fed_cells: usize,
+}
+
+impl Stop {
+    /// Cells fed before the first block in a window of `window_cells` cells.
+    ///
+    /// By then the material that the start-up compacted has left through the outlet.
+    pub fn startup_at(&self, window_cells: usize) -> usize {
+        self.startup_cells.unwrap_or(window_cells)
+    }
+
+    /// Fewest cells that a point feeds in a window of `window_cells` cells.
+    pub fn least_fed_cells(&self, window_cells: usize) -> usize {
+        self.startup_at(window_cells) + self.blocks * self.block_cells
+    }
+}
+
+/// What is written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Output {
+    /// Folder of the results.
+    pub directory: String,
+    /// Profile bins in a cell.
+    pub bins_per_cell: usize,
+    /// Field images.
+    pub images: bool,
+}

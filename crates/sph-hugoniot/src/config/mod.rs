@@ -1,0 +1,70 @@
+//! Case files: text → tree with places → schema → checked case in SI.
+//!
+//! Three layers, each with its own types: [`schema`] is the file as written, [`resolve`] decides what is required,
+//! what the defaults are and what must hold together, and [`case`] is what the rest of the program sees. Every fault of
+//! a file is reported at once, with its line and column ([`fault`]).
+
+pub mod case;
+pub mod fault;
+pub mod resolve;
+mod resolve_material;
+pub mod schema;
+pub mod syntax;
+pub mod tree;
+pub mod units;
+
+use std::path::Path;
+
+pub use case::Case;
+pub use fault::{CaseError, Fault};
+
+/// Largest case file that is read [bytes].
+const MAX_FILE: u64 = 1 << 20;
+
+/// Reads a case file.
+pub fn load(path: &Path) -> Result<Case, CaseError> {
+    let shown = path.display().to_string();
+    let refuse = |message: String| CaseError {
+        path: shown.clone(),
+        text: String::new(),
+        faults: vec![Fault::new(0..0, message)],
+    };
+    let metadata =
+        std::fs::metadata(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
+    if metadata.len() > MAX_FILE {
+        return Err(refuse(format!(
+            "the case file has {} bytes; at most {MAX_FILE} are read",
+            metadata.len()
+        )));
+    }
+    let bytes = std::fs::read(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
+    let text =
+        String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}")))?;
+    parse(&text, &shown)
+}
+
+/// Reads a case from text; `path` stands in the messages.
+pub fn parse(text: &str, path: &str) -> Result<Case, CaseError> {
+    let faults = fault::Faults::default();
+    let root = syntax::parse(text, &faults);
+    let case = root.as_ref().and_then(|node| {
+        let schema: schema::CaseSchema = tree::read(node, &faults)?;
+        resolve::resolve(&schema, &node.span, &faults)
+    });
+    match case {
+        Some(case) if faults.is_empty() => Ok(case),
+        _ => {
+            Err(CaseError { path: path.into(), text: text.into(), faults: with_paths(faults, root.as_ref()) })
+        }
+    }
+}
+
+/// Adds to each fault the path of the field that it stands at.
+fn with_paths(faults: fault::Faults, root: Option<&syntax::Node>) -> Vec<Fault> {
+    let mut list = faults.into_sorted();
+    list.retain(|f| !f.message.is_empty());
+    for fault in &mut list {
+        fault.field = root.map_or(String::new(), |node| syntax::path_to(node, &fault.span));
+    }
+    list
+}

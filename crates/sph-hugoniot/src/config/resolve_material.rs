@@ -1,0 +1,90 @@
+//! The solid of a case: from the library with changes, or in full.
+
+use sph_materials::eos::MieGruneisen;
+use sph_materials::{EquationOfState, Failure, Material, SoundSpeedModel, Strength, library};
+
+use super::fault::{Fault, Span, name_hint};
+use super::resolve::Resolver;
+use super::schema::{LibrarySchema, MaterialSchema, SolidSchema};
+use super::tree::Field;
+
+/// Least and greatest modulus or strength that is accepted [Pa].
+const STRENGTH: (f64, f64) = (1.0, 1e13);
+
+impl Resolver<'_> {
+    pub(super) fn material(&self, material: &MaterialSchema, group: &Span) -> Option<Material> {
+        let material = match material {
+            MaterialSchema::Library(m) => self.library_material(m, group)?,
+            MaterialSchema::MieGruneisen(m) => self.solid(m, group)?,
+        };
+        for fault in material.validate().err().into_iter().flatten() {
+            self.faults.push(Fault::new(group.clone(), fault.to_string()));
+        }
+        Some(material)
+    }
+
+    /// A named material; what is given beside the name replaces the library's numbers.
+    fn library_material(&self, m: &LibrarySchema, group: &Span) -> Option<Material> {
+        let shear_modulus = self.quantity(&m.shear_modulus, STRENGTH.0, STRENGTH.1);
+        let yield_strength = self.quantity(&m.yield_strength, STRENGTH.0, STRENGTH.1);
+        let tensile_strength = self.quantity(&m.tensile_strength, STRENGTH.0, STRENGTH.1);
+        let name = m.name.required("name", group, self.faults)?;
+        let Ok(mut material) = library::material(name) else {
+            let span = m.name.span().unwrap_or_default();
+            let message = format!("no material of the library is called {name:?}");
+            self.refuse(span, message, &name_hint(name, &library::names()));
+            return None;
+        };
+        let shear_modulus = shear_modulus.or(Some(material.strength.shear_modulus()).filter(|&g| g > 0.0));
+        let known_yield = match material.strength {
+            Strength::PerfectPlastic { yield_strength, .. } => Some(yield_strength),
+            Strength::Fluid | Strength::Elastic { .. } => None,
+        };
+        material.strength = strength(shear_modulus, yield_strength.or(known_yield));
+        if let Some(tensile_strength) = tensile_strength {
+            material.failure = Failure::TensileCutoff { tensile_strength };
+        }
+        material.sound_speed = self.choice(&m.contact_sound_speed, SoundSpeedModel::Thermodynamic)?;
+        Some(material)
+    }
+
+    fn solid(&self, m: &SolidSchema, group: &Span) -> Option<Material> {
+        let density = self.needed(&m.density, "density", group, 1.0, 1e5);
+        let bulk_sound_speed = self.needed(&m.bulk_sound_speed, "bulk_sound_speed", group, 1.0, 1e5);
+        m.hugoniot_slope.required("hugoniot_slope", group, self.faults);
+        m.gruneisen_coefficient.required("gruneisen_coefficient", group, self.faults);
+        let hugoniot_slope = self.number(&m.hugoniot_slope, 1.5, 0.0, 5.0);
+        let gruneisen_coefficient = self.number(&m.gruneisen_coefficient, 1.7, 0.0, 10.0);
+        let shear_modulus = self.quantity(&m.shear_modulus, STRENGTH.0, STRENGTH.1);
+        let yield_strength = self.quantity(&m.yield_strength, STRENGTH.0, STRENGTH.1);
+        let tensile_strength = self.quantity(&m.tensile_strength, STRENGTH.0, STRENGTH.1);
+        if let (Field::Absent, Field::Good(_, span)) = (&m.shear_modulus, &m.yield_strength) {
+            let message = "a yield strength without a shear modulus".to_string();
+            self.refuse(span.clone(), message, "add `shear_modulus: …`, or leave both out for a fluid");
+        }
+        Some(Material {
+            name: m.name.get().cloned().unwrap_or_else(|| "solid".into()),
+            reference_density: density?,
+            equation_of_state: EquationOfState::MieGruneisen(MieGruneisen {
+                bulk_sound_speed: bulk_sound_speed?,
+                hugoniot_slope: hugoniot_slope?,
+                gruneisen_coefficient: gruneisen_coefficient?,
+            }),
+            strength: strength(shear_modulus, yield_strength),
+            failure: tensile_strength
+                .map_or(Failure::None, |tensile_strength| Failure::TensileCutoff { tensile_strength }),
+            sound_speed: self.choice(&m.contact_sound_speed, SoundSpeedModel::Thermodynamic)?,
+        })
+    }
+}
+
+/// Strength from what is known of it.
+fn strength(shear_modulus: Option<f64>, yield_strength: Option<f64>) -> Strength {
+    match (shear_modulus, yield_strength) {
+        (Some(shear_modulus), Some(yield_strength)) => {
+            Strength::PerfectPlastic { shear_modulus, yield_strength }
+        }
+        (Some(shear_modulus), None) => Strength::Elastic { shear_modulus },
+        (None, _) => Strength::Fluid,
+    }
+}

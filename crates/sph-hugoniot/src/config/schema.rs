@@ -1,0 +1,300 @@
+//! The case file as it is written: every field optional, with its place; nothing checked but types and units.
+//!
+//! [`super::resolve`] says which fields are required, what the defaults are, and which ranges hold.
+
+use serde::Deserialize;
+use sph_materials::SoundSpeedModel;
+
+use super::tree::Field;
+use super::units::{Count, Density, Length, Number, Pressure, Velocity};
+
+/// The whole file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CaseSchema {
+    /// What it is called in reports.
+    pub name: Field<String>,
+    /// The solid.
+    pub material: Field<MaterialSchema>,
+    /// Cell, pores and particles.
+    pub medium: Field<MediumSchema>,
+    /// How the equations are solved.
+    pub scheme: Field<SchemeSchema>,
+    /// The moving window.
+    pub window: Field<WindowSchema>,
+    /// Particle velocities u_p.
+    pub points: Field<Vec<Field<Velocity>>>,
+    /// When a point has settled.
+    pub stop: Field<StopSchema>,
+    /// What is written.
+    pub output: Field<OutputSchema>,
+}
+
+/// The solid: from the library, with changes, or in full.
+#[derive(Debug, Deserialize)]
+pub enum MaterialSchema {
+    /// A named material of the library; fields given here replace the library's.
+    Library(LibrarySchema),
+    /// A Mie-Grüneisen solid with all its parameters.
+    MieGruneisen(SolidSchema),
+}
+
+/// A named material and what is changed in it.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LibrarySchema {
+    /// Name in the library.
+    pub name: Field<String>,
+    /// Shear modulus G.
+    pub shear_modulus: Field<Pressure>,
+    /// Yield strength Y.
+    pub yield_strength: Field<Pressure>,
+    /// Tensile strength T.
+    pub tensile_strength: Field<Pressure>,
+    /// Bulk sound speed of the contact.
+    pub contact_sound_speed: Field<SoundSpeedModel>,
+}
+
+/// All parameters of a Mie-Grüneisen solid.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SolidSchema {
+    /// What it is called.
+    pub name: Field<String>,
+    /// Density ρ0 of the undisturbed solid.
+    pub density: Field<Density>,
+    /// c_a of the solid's u_s = c_a + s_a u_p.
+    pub bulk_sound_speed: Field<Velocity>,
+    /// s_a of the solid's u_s = c_a + s_a u_p.
+    pub hugoniot_slope: Field<Number>,
+    /// Grüneisen coefficient γ.
+    pub gruneisen_coefficient: Field<Number>,
+    /// Shear modulus G; without it a fluid.
+    pub shear_modulus: Field<Pressure>,
+    /// Yield strength Y; without it elastic.
+    pub yield_strength: Field<Pressure>,
+    /// Tensile strength T; without it unlimited.
+    pub tensile_strength: Field<Pressure>,
+    /// Bulk sound speed of the contact.
+    pub contact_sound_speed: Field<SoundSpeedModel>,
+}
+
+/// Cell, pores and particles.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MediumSchema {
+    /// Edge of the square periodic cell.
+    pub cell: Field<Length>,
+    /// Where the pores are.
+    pub pores: Field<PoresSchema>,
+    /// Porosity m = ρ0/ρ00 to reach.
+    pub porosity: Field<Number>,
+    /// Particle size D.
+    pub particle_size: Field<Length>,
+    /// How particles are packed.
+    pub packing: Field<PackingSchema>,
+}
+
+/// Where the pores are.
+#[derive(Debug, Deserialize)]
+pub enum PoresSchema {
+    /// No pores: the solid.
+    None,
+    /// One pore a cell.
+    Square(PoreSchema),
+    /// Two pores a cell: one more in the middle of four.
+    CenteredSquare(PoreSchema),
+}
+
+/// A circular pore.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PoreSchema {
+    /// Radius r.
+    pub radius: Field<Length>,
+}
+
+/// How particles are packed.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub enum PackingSchema {
+    /// On a square lattice.
+    Square,
+    /// On a hexagonal lattice.
+    Hexagonal,
+}
+
+/// How the equations are solved.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SchemeSchema {
+    /// Scheme.
+    pub scheme: Field<SchemeName>,
+    /// Limiter of the reconstruction.
+    pub limiter: Field<LimiterName>,
+    /// Kernel.
+    pub kernel: Field<KernelName>,
+    /// θ in h_ij = θ(D_i + D_j).
+    pub smoothing: Field<Number>,
+    /// C in the time step C min D/(c_l + |U_rel|).
+    pub cfl: Field<Number>,
+    /// What replaces L⁻¹ at free surfaces.
+    pub surface: Field<SurfaceSchema>,
+    /// Relaxation of the density towards the particles' packing.
+    pub volume_consistency: Field<VolumeConsistencySchema>,
+}
+
+/// Scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
+pub enum SchemeName {
+    /// No reconstruction, no kernel correction.
+    Csph,
+    /// Total kernel correction and reconstruction, explicit Euler.
+    TkcMuscl,
+    /// Total kernel correction, reconstruction, half-step in time.
+    TkcHancock,
+}
+
+/// Limiter of the reconstruction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
+pub enum LimiterName {
+    /// minmod(forward, central).
+    MinmodPrinted,
+    /// minmod(forward, upwind).
+    MinmodTvd,
+    /// van Leer's harmonic limiter.
+    VanLeer,
+    /// Monotonized central.
+    MonotonizedCentral,
+}
+
+/// Kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
+pub enum KernelName {
+    /// Wendland C2.
+    WendlandC2,
+    /// Wendland C4.
+    WendlandC4,
+    /// Cubic spline.
+    CubicSpline,
+    /// Quintic spline.
+    Quintic,
+}
+
+/// What replaces L⁻¹ at free surfaces.
+#[derive(Debug, Deserialize)]
+pub enum SurfaceSchema {
+    /// L⁻¹ everywhere.
+    None,
+    /// L = I where the least eigenvalue of L⁻¹ is below 0.75.
+    Printed(FloorSchema),
+    /// L = I where the least eigenvalue of L is below 0.75.
+    Intended(FloorSchema),
+    /// Eigenvalues of the inverse capped.
+    SpectralCap(CapSchema),
+}
+
+/// Least determinant of L.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FloorSchema {
+    /// ε: L = I where det L < ε.
+    pub determinant_floor: Field<Number>,
+}
+
+/// Largest eigenvalue of the inverse.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CapSchema {
+    /// c: largest eigenvalue of K.
+    pub cap: Field<Number>,
+}
+
+/// Relaxation of the density towards the particles' packing.
+#[derive(Debug, Deserialize)]
+pub enum VolumeConsistencySchema {
+    /// Density by continuity alone.
+    Off,
+    /// With relaxation.
+    On(RelaxationSchema),
+}
+
+/// Parameters of the relaxation.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RelaxationSchema {
+    /// h_S / D of the wide kernel.
+    pub width: Field<Number>,
+    /// κ.
+    pub rate: Field<Number>,
+    /// Tolerance of ΔS.
+    pub tolerance: Field<Number>,
+    /// δ.
+    pub delta: Field<Number>,
+}
+
+/// The moving window.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WindowSchema {
+    /// Length.
+    pub length: Field<LengthSchema>,
+    /// Width of the inlet and of each outlet region in D.
+    pub region_width: Field<Number>,
+    /// What is imposed at the inlet.
+    pub inlet: Field<InletName>,
+}
+
+/// Length of the window.
+#[derive(Debug, Deserialize)]
+pub enum LengthSchema {
+    /// From u_p.
+    Auto,
+    /// Number of cells.
+    Cells(Field<Count>),
+}
+
+/// What is imposed at the inlet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
+pub enum InletName {
+    /// The velocity.
+    FixedVelocity,
+    /// The impedance: waves leave.
+    ImpedanceMatched,
+}
+
+/// When a point has settled.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct StopSchema {
+    /// Cells fed before the first block.
+    pub startup_cells: Field<StartupSchema>,
+    /// Cells fed in a block.
+    pub block_cells: Field<Count>,
+    /// Successive blocks that must agree.
+    pub blocks: Field<Count>,
+    /// Relative agreement of u_s between blocks.
+    pub tolerance: Field<Number>,
+    /// Cells fed at most.
+    pub max_fed_cells: Field<Count>,
+}
+
+/// Cells fed before the first block.
+#[derive(Debug, Deserialize)]
+pub enum StartupSchema {
+    /// From the window's length.
+    Auto,
+    /// Number of cells.
+    Cells(Field<Count>),
+}
+
+/// What is written.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OutputSchema {
+    /// Folder of the results.
+    pub directory: Field<String>,
+    /// Profile bins in a cell.
+    pub bins_per_cell: Field<Count>,
+    /// Field images.
+    pub images: Field<bool>,
+}

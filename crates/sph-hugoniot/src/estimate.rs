@@ -1,0 +1,118 @@
+//! What a run will need: particles, memory, time. Rough, and said to be so.
+//!
+//! The front's speed is guessed as the larger of two lines: shut pores follow the snow-plow slope a = m/(m - 1),
+//! u_s = a u_p; pores that stay open follow sqrt(Y/ρ00) + a u_p/2. The second is empirical: it is the published fit of
+//! porous copper within 3 %. A solid without pores is taken at its elastic wave. Enough for an estimate.
+
+use serde::Serialize;
+use sph_materials::Strength;
+
+use crate::config::Case;
+use crate::microstructure::Sample;
+
+/// Memory of a particle with its neighbor lists [bytes]: the design bound of the solver.
+const BYTES_PER_PARTICLE: f64 = 800.0;
+/// Particle-steps per second of one core [1/s]: measured with the default scheme, rounded down.
+const PARTICLE_STEPS_PER_SECOND: f64 = 2.0e6;
+
+/// What one point will need.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PointEstimate {
+    /// Particle velocity u_p [m/s].
+    pub particle_velocity: f64,
+    /// Guess of the shock velocity u_s [m/s].
+    pub shock_velocity: f64,
+    /// Window [cells].
+    pub window_cells: usize,
+    /// Particles in the window.
+    pub particles: usize,
+    /// Fewest cells fed.
+    pub fed_cells: usize,
+    /// Steps to feed them.
+    pub steps: f64,
+    /// Time on one core [s].
+    pub seconds: f64,
+    /// Memory [bytes].
+    pub bytes: f64,
+}
+
+/// Guess of the shock velocity [m/s] of the medium at u_p [m/s].
+pub fn shock_velocity(case: &Case, porosity: f64, particle_velocity: f64) -> f64 {
+    let material = &case.material;
+    let solid = material.longitudinal_sound_speed(material.reference_density, 0.0);
+    if porosity <= 1.0 + 1e-9 {
+        return solid;
+    }
+    let slope = porosity / (porosity - 1.0);
+    let yield_strength = match material.strength {
+        Strength::PerfectPlastic { yield_strength, .. } => yield_strength,
+        Strength::Fluid | Strength::Elastic { .. } => 0.0,
+    };
+    let open =
+        (yield_strength * porosity / material.reference_density).sqrt() + 0.5 * slope * particle_velocity;
+    open.max(slope * particle_velocity).min(solid + 1.5 * particle_velocity)
+}
+
+/// What one point will need.
+pub fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> PointEstimate {
+    let u_s = shock_velocity(case, sample.porosity, particle_velocity);
+    let window_cells = case.window.cells_at(particle_velocity);
+    let fed_cells = case.stop.least_fed_cells(window_cells);
+    // Behind the front the particles stand closer, by up to m; half of the window on average.
+    let packed = 0.5 * (1.0 + sample.porosity);
+    let particles = (window_cells as f64 * sample.particles.len() as f64 * packed).round();
+    let sound_speed = case.material.longitudinal_sound_speed(sample.density, 0.0);
+    let step = case.scheme.cfl * case.medium.particle_size / (sound_speed + particle_velocity);
+    let steps = (fed_cells as f64 * sample.cell / u_s / step).ceil();
+    PointEstimate {
+        particle_velocity,
+        shock_velocity: u_s,
+        window_cells,
+        particles: particles as usize,
+        fed_cells,
+        steps,
+        seconds: particles * steps / PARTICLE_STEPS_PER_SECOND,
+        bytes: particles * BYTES_PER_PARTICLE,
+    }
+}
+
+/// What all points need on `threads` cores: (time [s], memory [bytes]).
+pub fn total(points: &[PointEstimate], threads: usize) -> (f64, f64) {
+    let work: f64 = points.iter().map(|p| p.seconds).sum();
+    let longest = points.iter().map(|p| p.seconds).fold(0.0, f64::max);
+    let mut bytes: Vec<f64> = points.iter().map(|p| p.bytes).collect();
+    bytes.sort_by(|a, b| b.total_cmp(a));
+    let side_by_side = threads.min(points.len());
+    (
+        (work / threads as f64).max(longest / (threads as f64 / side_by_side as f64)),
+        bytes.iter().take(side_by_side).sum(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config;
+
+    fn case() -> Case {
+        config::parse(include_str!("../templates/porous-copper.ron"), "porous-copper.ron").unwrap()
+    }
+
+    #[test]
+    fn the_guess_is_within_a_tenth_of_what_was_published() {
+        for (u_p, published) in [(50.0, 321.1), (100.0, 415.4), (150.0, 541.6), (250.0, 883.0)] {
+            let guess = shock_velocity(&case(), 1.35, u_p);
+            assert!((guess / published - 1.0).abs() < 0.1, "u_p = {u_p}: {guess} against {published}");
+        }
+        assert!(shock_velocity(&case(), 1.0, 100.0) > 4000.0);
+    }
+
+    #[test]
+    fn more_cores_never_take_longer() {
+        let case = case();
+        let sample = crate::microstructure::sample(&case.medium, case.material.reference_density);
+        let points: Vec<_> = case.points.iter().map(|&u| point(&case, &sample, u)).collect();
+        let times: Vec<f64> = [1, 2, 4, 8, 16].iter().map(|&n| total(&points, n).0).collect();
+        assert!(times.is_sorted_by(|a, b| a >= b), "{times:?}");
+    }
+}

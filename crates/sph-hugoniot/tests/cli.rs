@@ -1,0 +1,78 @@
+//! The command line: exit codes and what is said.
+
+use assert_cmd::Command;
+
+fn hugoniot() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hugoniot"));
+    command.env_remove("RUST_BACKTRACE").env_remove("RUST_LOG");
+    command
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn init_writes_a_case_that_check_accepts() {
+    let folder = tempfile::tempdir().unwrap();
+    for template in ["porous-copper", "smoke"] {
+        let output = hugoniot().args(["init", template]).assert().success().get_output().stdout.clone();
+        let path = folder.path().join(format!("{template} ä.ron"));
+        std::fs::write(&path, output).unwrap();
+        hugoniot().arg("check").arg(&path).assert().success();
+    }
+}
+
+#[test]
+fn shipped_cases_are_the_templates() {
+    let cases = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    for (name, template) in sph_hugoniot::template::TEMPLATES {
+        let shipped = std::fs::read_to_string(cases.join(format!("{name}.ron"))).unwrap();
+        assert!(
+            shipped == template,
+            "cases/{name}.ron differs from crates/sph-hugoniot/templates/{name}.ron"
+        );
+    }
+}
+
+#[test]
+fn check_tells_what_a_case_resolves_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.ron");
+    std::fs::write(&path, sph_hugoniot::template::text("porous-copper").unwrap()).unwrap();
+    let output =
+        hugoniot().args(["check", "--json"]).arg(&path).assert().success().get_output().stdout.clone();
+    let value: serde_json::Value = serde_json::from_slice(&output).unwrap();
+    assert_eq!(value["particles_per_cell"], 296);
+    let reached = value["porosity_reached"].as_f64().unwrap();
+    assert!((reached - 1.3514).abs() < 1e-4);
+}
+
+#[test]
+fn a_broken_file_lists_all_faults_and_exits_with_two() {
+    let bad = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/bad/many_faults.ron");
+    for command in ["check"] {
+        let assert = hugoniot().arg(command).arg(&bad).assert().code(2);
+        let message = text(&assert.get_output().stderr);
+        for part in
+            ["many_faults.ron:6:15", "medium.cell: `GPa`", "hint: did you mean `VanLeer`?", "16 faults found"]
+        {
+            assert!(message.contains(part), "{part} is missing in\n{message}");
+        }
+        assert!(assert.get_output().stdout.is_empty());
+    }
+}
+
+#[test]
+fn wrong_arguments_and_missing_files_exit_with_two() {
+    hugoniot().arg("walk").assert().code(2);
+    hugoniot().args(["init", "porous-coper"]).assert().code(2);
+    let assert = hugoniot().args(["check", "no such file.ron"]).assert().code(2);
+    assert!(text(&assert.get_output().stderr).contains("no such file.ron"));
+}
+
+#[test]
+fn help_shows_examples() {
+    let help = text(&hugoniot().arg("--help").assert().success().get_output().stdout);
+    assert!(help.contains("hugoniot init porous-copper > case.ron") && help.contains("Exit codes"));
+}

@@ -136,4 +136,13 @@ mod tests {
         assert_eq!(COPPER.density_limit(8960.0), 3.0 * 8960.0);
         assert!(COPPER.pressure(8960.0, 2.999_999 * 8960.0, 0.0).abs() > 1e18);
     }
+
+    /// x = 1.25, e = 0: P = rho0 c_a^2 (-1/4) - gamma (rho0 / 1.25) c_a^2 / 32, no denominator in expansion.
+    #[test]
+    fn expansion_has_no_hugoniot_denominator() {
+        let bulk_modulus = 8960.0 * 3930.0 * 3930.0;
+        let expected = -bulk_modulus * (0.25 + 1.7 / 1.25 / 32.0);
+        let pressure = COPPER.pressure(8960.0, 8960.0 / 1.25, 0.0);
+        assert!((pressure / expected - 1.0).abs() < 1e-14, "{pressure} {expected}");
+    }
 }

@@ -3,11 +3,14 @@
 //!
 //! This crate knows space, particles and sums over neighbours. It does not know materials, Riemann problems or files.
 
+pub mod correction;
 pub mod dimension;
 pub mod domain;
 pub mod error;
+pub mod gradient;
 pub mod kernel;
 pub mod lanes;
+pub mod matrix;
 pub mod neighbors;
 pub mod particles;
 pub mod reduce;
@@ -15,4 +18,6 @@ pub mod reduce;
 pub use dimension::{Components, Dim2, Dim3, Dimension, Vector};
 pub use domain::Domain;
 pub use error::CoreError;
+pub use kernel::KernelFamily;
+pub use matrix::SquareMatrix;
 pub use particles::{Constraint, Particle, Particles};

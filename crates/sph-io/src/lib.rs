@@ -9,6 +9,7 @@ mod draw;
 mod error;
 pub mod field_image;
 pub mod plot;
+pub mod snapshot;
 pub mod table;
 
 pub use atomic::{write_atomic, write_atomic_with};

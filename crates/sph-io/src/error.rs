@@ -43,6 +43,14 @@ pub enum IoError {
         /// Version that this program reads.
         expected: u32,
     },
+    /// The file is whole, and holds something else than what is asked of it.
+    #[error("{}: does not fit: {what}", path.display())]
+    Mismatch {
+        /// File that was read.
+        path: PathBuf,
+        /// What does not fit.
+        what: String,
+    },
     /// Somebody else is at work in the folder.
     #[error("{}: in use by {holder}; wait for its end or choose another folder", path.display())]
     Locked {
@@ -68,6 +76,10 @@ impl IoError {
         Self::Damaged { path: path.to_path_buf(), what: what.into() }
     }
 
+    pub(crate) fn mismatch(path: &Path, what: impl Into<String>) -> Self {
+        Self::Mismatch { path: path.to_path_buf(), what: what.into() }
+    }
+
     /// The file or folder that the error is about.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -75,6 +87,7 @@ impl IoError {
             Self::File { path, .. }
             | Self::Invalid { path, .. }
             | Self::Damaged { path, .. }
+            | Self::Mismatch { path, .. }
             | Self::Version { path, .. }
             | Self::Locked { path, .. } => path,
         }

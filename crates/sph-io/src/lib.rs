@@ -4,6 +4,7 @@
 //! ([`atomic`]): whole or not at all. Every error names its path.
 
 pub mod atomic;
+pub mod checkpoint;
 mod color;
 mod draw;
 mod error;

@@ -1,0 +1,159 @@
+//! Cell lists, kd-tree and brute force find the same pairs, in any box, with unequal sizes.
+
+mod common;
+
+use common::{box_of, random};
+use proptest::prelude::*;
+use rand::RngExt;
+use sph_core::neighbors::{NeighborLists, Reach, brute_force, kd_tree};
+use sph_core::{Components, Dim2, Dim3, Dimension, Domain, Vector};
+
+/// Random points in a box with random periodic axes, and sizes over a wide range.
+struct Scene<D: Dimension> {
+    position: D::AxisColumns,
+    size: Vec<f64>,
+    domain: Domain<D>,
+}
+
+impl<D: Dimension> Scene<D> {
+    /// `periodic` has one bit for each axis. `shortest` is the least edge of the box; the least size is 0.02.
+    fn new(count: usize, periodic: u8, shortest: f64, seed: u64) -> Self {
+        let mut random = random(seed);
+        let edges: [f64; 3] = std::array::from_fn(|_| random.random_range(shortest..1.5 * shortest));
+        let domain = box_of(|a| edges[a], |a| periodic >> a & 1 == 1);
+        let position =
+            Components::from_fn(|a| (0..count).map(|_| random.random_range(0.0..edges[a])).collect());
+        let size = (0..count).map(|_| random.random_range(0.02..0.1)).collect();
+        Self { position, size, domain }
+    }
+
+    fn point(&self, i: usize) -> D::Vector {
+        D::vector(|a| self.position[a][i])
+    }
+
+    fn moved(&self, amplitude: f64, seed: u64) -> D::AxisColumns {
+        let mut random = random(seed);
+        Components::from_fn(|a| {
+            let shift = |x: &f64| x + random.random_range(-amplitude..=amplitude);
+            self.position[a].iter().map(shift).collect()
+        })
+    }
+}
+
+/// Pairs of the lists by owner, sorted; each image of a neighbour counts.
+fn listed_pairs<D: Dimension>(lists: &NeighborLists<D>) -> Vec<(u32, u32)> {
+    let of = |i: usize| lists.neighbors(i).map(move |j| (i as u32, lists.owner(j as usize) as u32));
+    let mut pairs: Vec<(u32, u32)> = (0..lists.n_particles).flat_map(of).collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+/// Pairs with every image, by plain loops over the turns along each axis; (i, i) stands for images of i itself.
+fn image_pairs<D: Dimension>(scene: &Scene<D>, cut: impl Fn(f64, f64) -> f64) -> Vec<(u32, u32)> {
+    let turns = |a: usize| if a < D::COUNT && scene.domain.periodic[a] { -3..=3 } else { 0..=0 };
+    let mut shifts = Vec::new();
+    for x in turns(0) {
+        for y in turns(1) {
+            shifts.extend(turns(2).map(|z| [x, y, z]));
+        }
+    }
+    let mut pairs = Vec::new();
+    for i in 0..scene.size.len() {
+        for j in 0..scene.size.len() {
+            for shift in shifts.iter().filter(|s| i != j || **s != [0; 3]) {
+                let image =
+                    |a: usize| if shift[a] == 0 { 0.0 } else { shift[a] as f64 * scene.domain.period(a) };
+                let offset = scene.point(j) - scene.point(i) + D::vector(image);
+                if offset.length() < cut(scene.size[i], scene.size[j]) {
+                    pairs.push((i as u32, j as u32));
+                }
+            }
+        }
+    }
+    pairs
+}
+
+fn searches_agree<D: Dimension>(scene: &Scene<D>, factor: f64, skin: f64) -> Result<(), TestCaseError> {
+    let cut = |a: f64, b: f64| factor * (a + b) + skin;
+    let plain = brute_force::pairs(&scene.position, &scene.size, &scene.domain, cut);
+    let tree = kd_tree::pairs(&scene.position, &scene.size, &scene.domain, cut).unwrap();
+    prop_assert_eq!(&tree, &plain);
+    let lists =
+        NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, Reach { factor, skin });
+    let mut listed = listed_pairs(&lists);
+    prop_assert_eq!(&listed, &image_pairs(scene, cut));
+    listed.dedup();
+    listed.retain(|&(i, j)| i != j);
+    prop_assert_eq!(&listed, &plain);
+    Ok(())
+}
+
+/// As long as the lists say that they are good, no pair is missing; they say so while no pair can have used the skin up.
+fn lists_that_are_good_miss_no_pair<D: Dimension>(
+    scene: &Scene<D>,
+    skin: f64,
+    amplitude: f64,
+    seed: u64,
+) -> Result<(), TestCaseError> {
+    let lists =
+        NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, Reach { factor: 1.0, skin });
+    let now = scene.moved(amplitude, seed);
+    if lists.outlived(&now) {
+        let farthest_apart = 2.0 * amplitude * (D::COUNT as f64).sqrt();
+        prop_assert!(farthest_apart > skin, "given up too early");
+        return Ok(());
+    }
+    let listed = listed_pairs(&lists);
+    for pair in brute_force::pairs(&now, &scene.size, &scene.domain, |a, b| a + b) {
+        prop_assert!(listed.binary_search(&pair).is_ok(), "{:?} is missing", pair);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn searches_agree_in_the_plane(
+        seed: u64, count in 0_usize..250, periodic in 0_u8..4, factor in 0.5..1.6, skin in 0.0..0.03
+    ) {
+        searches_agree(&Scene::<Dim2>::new(count, periodic, 1.0, seed), factor, skin)?;
+    }
+
+    #[test]
+    fn searches_agree_in_space(
+        seed: u64, count in 0_usize..120, periodic in 0_u8..8, factor in 0.5..1.6, skin in 0.0..0.03
+    ) {
+        searches_agree(&Scene::<Dim3>::new(count, periodic, 0.7, seed), factor, skin)?;
+    }
+
+    /// Periods down to less than the reach: particles see several images of each other and of themselves.
+    #[test]
+    fn searches_agree_in_narrow_boxes(
+        seed: u64, count in 1_usize..30, periodic in 1_u8..4, shortest in 0.15..0.4
+    ) {
+        searches_agree(&Scene::<Dim2>::new(count, periodic, shortest, seed), 1.5, 0.01)?;
+    }
+
+    #[test]
+    fn good_lists_miss_no_pair(
+        seed: u64, count in 1_usize..200, periodic in 0_u8..4, skin in 0.0..0.1, share in 0.0..0.7
+    ) {
+        let scene = Scene::<Dim2>::new(count, periodic, 1.0, seed);
+        lists_that_are_good_miss_no_pair(&scene, skin, share * skin, seed)?;
+    }
+
+    /// The tree's nearest point is the nearest, for targets outside the box too.
+    #[test]
+    fn the_nearest_point_is_the_nearest(
+        seed: u64, count in 1_usize..100, periodic in 0_u8..8, x in -2.0..2.0, y in -2.0..2.0, z in -2.0..2.0
+    ) {
+        let scene = Scene::<Dim3>::new(count, periodic, 0.7, seed);
+        let target = glam::DVec3::new(x, y, z);
+        let tree = kd_tree::KdTree::new(&scene.position, &scene.domain).unwrap();
+        let distance = |i: usize| scene.domain.distance(target, scene.point(i));
+        let least = (0..count).map(distance).fold(f64::INFINITY, f64::min);
+        let (_, found) = tree.nearest(target).unwrap();
+        prop_assert!((found - least).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,42 @@
+//! A plastic shock in solid copper, watched until 2 mm have been fed through a window of 0.2 mm.
+//!
+//! `cargo run --release --example solid_copper`
+
+use sph_core::{Components, Dim2, Domain, Particle, Particles, dimension::Dimension};
+use sph_riemann::{Scheme, Settings};
+use sph_window::{FeedSample, InletKind, Window, WindowError, WindowSettings};
+
+/// Particle size [m].
+const SIZE: f64 = 1e-6;
+
+fn sample(density: f64) -> Result<FeedSample<Dim2>, WindowError> {
+    let (columns, rows) = (10, 6);
+    let mut particles = Particles::default();
+    for index in 0..columns * rows {
+        let place = [(index % columns) as f64 + 0.5, (index / columns) as f64 + 0.5];
+        let position = Dim2::vector(|axis| SIZE * place[axis]);
+        particles.push(Particle::at_rest(index as u64, position, density * SIZE * SIZE, SIZE, density));
+    }
+    let upper = Dim2::vector(|axis| SIZE * [columns, rows][axis] as f64);
+    FeedSample::new(particles, Domain::new(Dim2::vector(|_| 0.0), upper, Components::from_fn(|_| true)))
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let copper = sph_materials::library::material("porous-copper")?;
+    let settings = WindowSettings {
+        inlet: InletKind::ImpedanceMatched { wave_speed: None },
+        ..WindowSettings::new(200.0 * SIZE, 200.0)
+    };
+    let sample = sample(copper.reference_density)?;
+    let mut window = Window::new(sample, vec![copper], Settings::for_scheme(Scheme::TkcHancock), settings)?;
+    while window.fed_length() < 2e-3 {
+        if let Some(boost) = window.step()?.boost {
+            println!("{:7.1} ns: boost by {boost:8.2} m/s", 1e9 * window.time());
+        }
+    }
+    let shock = window.shock_velocity().ok_or("no block of the medium was swept")?;
+    println!("u_p = {:.1} m/s behind the precursor", window.effective_particle_velocity());
+    println!("u_s = {:.1} ± {:.1} m/s from the front", shock.velocity, shock.standard_error);
+    println!("the ledger closes to {:.1e}", window.ledger_residual());
+    Ok(())
+}

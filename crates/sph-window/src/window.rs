@@ -1,0 +1,279 @@
+//! The window: a simulation, its feed, and everything that keeps a shock front in view.
+//!
+//! One step ([`Window::step`]): when the neighbour lists are due anyway, or the matter at the ends has moved by a particle
+//! size, particles are exchanged at both ends; then one step of the simulation; what it put in is booked; after an
+//! exchange the front is looked at, and the frame boosted if a boost is due.
+//!
+//! At the start the box holds the medium moving with \\( -u_{in} \\), and the outlet, moving with \\( -u_{out} \\), is the
+//! piston: a front leaves it towards +x.
+
+use crate::error::WindowError;
+use crate::feed::{Feed, FeedSample};
+use crate::frame::Frame;
+use crate::inlet::{self, InletKind, Layer, LayerPlace};
+use crate::ledger::{Content, Ledger};
+use crate::outlet;
+use crate::region::Regions;
+use crate::search::Search;
+use crate::search::frame_tracking::{Observation, Target};
+use crate::settings::WindowSettings;
+use crate::shock::ShockHistory;
+use crate::state::{Progress, WindowState};
+use sph_core::dimension::{Components, Dimension};
+use sph_core::domain::Domain;
+use sph_core::particles::{Constraint, Particles};
+use sph_materials::Material;
+use sph_riemann::{Settings, Simulation, SolidDimension, StepReport};
+
+/// Length of the layer inside of the inlet whose stress an impedance-matched inlet reads, at least [D].
+const INLET_LAYER: f64 = 8.0;
+/// Swept length, in lengths of the box, after which a front that is not at its place never will be.
+const APPROACH_LIMIT: f64 = 50.0;
+
+/// What one step did.
+#[derive(Clone, Debug)]
+pub struct WindowReport<D: SolidDimension> {
+    /// The simulation's report.
+    pub step: StepReport<D>,
+    /// The look at the front, after an exchange at the ends.
+    pub observation: Option<Observation>,
+    /// The velocity that was added to everything along x, if any [m/s].
+    pub boost: Option<f64>,
+}
+
+/// A box with a shock front in it, through which the medium streams.
+pub struct Window<D: SolidDimension> {
+    pub(crate) simulation: Simulation<D>,
+    pub(crate) feed: Feed<D>,
+    pub(crate) settings: WindowSettings,
+    pub(crate) regions: Regions,
+    pub(crate) progress: Progress,
+}
+
+impl<D: SolidDimension> Window<D> {
+    /// A window on a medium at rest, at the moment when the piston starts.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError::Setting`] for a number out of its bounds, [`WindowError::Setup`] when the solver refuses.
+    pub fn new(
+        sample: FeedSample<D>,
+        materials: Vec<Material>,
+        solver: Settings,
+        settings: WindowSettings,
+    ) -> Result<Self, WindowError> {
+        settings.validate(sample.particle_size())?;
+        let regions = settings.regions_for(sample.particle_size());
+        let frame = Frame::new(settings.particle_velocity, settings.start_velocity());
+        let mut feed = Feed::new(sample);
+        let particles = fill(&mut feed, &regions, &frame);
+        let ledger = Ledger::new(Content::of_particles(&particles));
+        let block = settings.block * feed.sample().particle_size();
+        let history = ShockHistory::new(feed.sample().whole_periods(block));
+        let progress = Progress::new(frame, ledger, history);
+        Self::assemble(feed, particles, materials, solver, settings, progress)
+    }
+
+    /// A window that goes on from a saved state and its particles, in their saved order.
+    ///
+    /// # Errors
+    ///
+    /// As [`Window::new`], and [`WindowError::State`] when the state was saved with another sample.
+    pub fn restore(
+        sample: FeedSample<D>,
+        materials: Vec<Material>,
+        solver: Settings,
+        settings: WindowSettings,
+        saved: WindowState,
+        particles: Particles<D>,
+    ) -> Result<Self, WindowError> {
+        settings.validate(sample.particle_size())?;
+        let feed = Feed::restore(sample, saved.feed)?;
+        Self::assemble(feed, particles, materials, solver, settings, saved.progress)
+    }
+
+    fn assemble(
+        feed: Feed<D>,
+        particles: Particles<D>,
+        materials: Vec<Material>,
+        solver: Settings,
+        settings: WindowSettings,
+        progress: Progress,
+    ) -> Result<Self, WindowError> {
+        let regions = settings.regions_for(feed.sample().particle_size());
+        let simulation = Simulation::new(domain(&feed, regions.length), materials, particles, solver)?;
+        Ok(Self { simulation, feed, settings, regions, progress })
+    }
+
+    /// The state beside the particles, which are [`Simulation::particles`].
+    ///
+    /// Saving makes the neighbour lists stale: the run that goes on and the run that is restored then make the same
+    /// steps, to the last bit.
+    pub fn save(&mut self) -> WindowState {
+        let _ = self.simulation.particles_mut();
+        WindowState { feed: self.feed.state(), progress: self.progress.clone() }
+    }
+
+    /// One step.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError::Step`] when the solver fails, and an error when the front is lost, runs into the inlet, or never
+    /// comes to its place.
+    pub fn step(&mut self) -> Result<WindowReport<D>, WindowError> {
+        let exchange = self.exchange_is_due();
+        if exchange {
+            self.exchange();
+        }
+        let step = self.simulation.step()?;
+        self.book(&step);
+        let observation = if exchange { Some(self.observe()?) } else { None };
+        let boost = observation.and_then(|observation| self.steer(&observation));
+        Ok(WindowReport { step, observation, boost })
+    }
+
+    fn exchange_is_due(&self) -> bool {
+        let limit = self.settings.exchange_drift * self.feed.sample().particle_size();
+        self.simulation.lists_stale() || self.progress.drift > limit
+    }
+
+    /// Lets particles in and out, and brings what is imposed up to date.
+    fn exchange(&mut self) {
+        self.read_inlet();
+        let (inlet_velocity, outlet_velocity) =
+            (self.inlet_velocity(), self.progress.frame.outlet_velocity());
+        let (regions, ledger) = (&self.regions, &mut self.progress.ledger);
+        let particles = self.simulation.particles_mut();
+        ledger.impose(outlet::impose(particles, regions, outlet_velocity));
+        outlet::remove(particles, ledger);
+        inlet::release(particles, regions);
+        ledger.impose(inlet::impose(particles, regions, inlet_velocity));
+        for particle in self.feed.next_layer(regions.length, -inlet_velocity, Constraint::ImposedVelocity) {
+            ledger.feed(Content::of_particle(&particle));
+            particles.push(particle);
+        }
+        self.progress.drift = 0.0;
+        self.progress.exchanged = self.progress.time;
+    }
+
+    /// Reads the stress that arrives at an impedance-matched inlet.
+    fn read_inlet(&mut self) {
+        let InletKind::ImpedanceMatched { wave_speed } = self.settings.inlet else { return };
+        let (simulation, sample) = (&self.simulation, self.feed.sample());
+        let place = LayerPlace {
+            end: self.regions.inlet_start,
+            length: sample.whole_periods(INLET_LAYER * sample.particle_size()),
+            cross_section: sample.cross_section(),
+            medium_density: sample.mean_density(),
+        };
+        let matter = |i| (simulation.stress(i)[0], simulation.longitudinal_sound_speed(i));
+        let layer = Layer::measure(simulation.particles(), matter, place, wave_speed);
+        self.progress.inlet.update(&layer, self.progress.time - self.progress.exchanged);
+    }
+
+    /// Books what a step did.
+    fn book(&mut self, step: &StepReport<D>) {
+        self.progress.ledger.impose(Content::new::<D>(0.0, step.constraint_impulse, step.constraint_work));
+        self.progress.time += step.time_step;
+        self.progress.steps += 1;
+        let inlet_velocity = self.inlet_velocity();
+        self.feed.advance(-inlet_velocity * step.time_step);
+        let fastest = inlet_velocity.abs().max(self.progress.frame.outlet_velocity().abs());
+        self.progress.drift += fastest * step.time_step;
+    }
+
+    /// Looks at the front and takes it into the history.
+    fn observe(&mut self) -> Result<Observation, WindowError> {
+        let time = self.progress.time;
+        let profile = self.velocity_profile();
+        let level = -0.5 * (self.inlet_velocity() + self.progress.frame.outlet_velocity());
+        let front = match profile.rightmost_crossing(level) {
+            Some(front) => front,
+            // Before the front has left the piston, the mean over a period may not show it yet.
+            None if self.progress.observation.is_none_or(|o| o.front <= self.regions.outlet_end) => {
+                self.regions.outlet_end
+            }
+            None => return Err(WindowError::FrontLost { time }),
+        };
+        let observation = Observation { time, front, swept: self.feed.fed_length() + front };
+        self.check_front(&observation)?;
+        self.progress.history.observe(time, observation.swept);
+        self.progress.observation = Some(observation);
+        if self.is_settled()
+            && let Some((from, to)) = self.plateau()
+        {
+            let (inlet_velocity, density) = (self.inlet_velocity(), self.feed.sample().mean_density());
+            self.progress.balance.observe(&profile.between(from, to), inlet_velocity, density);
+        }
+        Ok(observation)
+    }
+
+    fn check_front(&self, now: &Observation) -> Result<(), WindowError> {
+        let (time, front, inlet) = (now.time, now.front, self.regions.inlet_start);
+        if front + 0.5 * self.grid().window > inlet {
+            return Err(WindowError::FrontAtInlet { time, front, inlet });
+        }
+        let waiting =
+            matches!(self.settings.search, Search::FrameTracking(_)) && !self.progress.tracker.arrived();
+        if waiting && now.swept > APPROACH_LIMIT * self.regions.length {
+            let wanted = self.settings.wanted_front();
+            return Err(WindowError::FrontNotArrived { time, swept: now.swept, front, wanted });
+        }
+        Ok(())
+    }
+
+    /// Boosts the frame if frame tracking asks for it.
+    fn steer(&mut self, now: &Observation) -> Option<f64> {
+        let Search::FrameTracking(tracking) = self.settings.search else { return None };
+        let sample = self.feed.sample();
+        let target = Target {
+            front: self.settings.wanted_front(),
+            interval: sample.whole_periods(tracking.interval * sample.particle_size()),
+            inlet_velocity: self.inlet_velocity(),
+        };
+        let had_arrived = self.progress.tracker.arrived();
+        let wanted = self.progress.tracker.observe(now, &target, &tracking)?;
+        // An outlet that moves to the right would bring matter back in.
+        let velocity = wanted.min(self.progress.frame.outlet_velocity());
+        self.boost(velocity);
+        if !had_arrived {
+            // What is behind the front now leaves with u_out, while the front sweeps with u_in.
+            let ratio = self.progress.frame.inlet_velocity() / self.progress.frame.outlet_velocity();
+            self.progress.settled_from = Some(now.swept + now.front * ratio);
+        }
+        Some(velocity)
+    }
+
+    /// Changes the frame: adds one velocity along x [m/s] to everything, imposed velocities included.
+    pub fn boost(&mut self, velocity: f64) {
+        self.progress.ledger.boost(velocity, &self.content());
+        self.simulation.boost(D::vector(|axis| if axis == 0 { velocity } else { 0.0 }));
+        self.progress.frame.boost(velocity);
+    }
+}
+
+/// The box: periodic across, open along x.
+fn domain<D: Dimension>(feed: &Feed<D>, length: f64) -> Domain<D> {
+    let cell = feed.sample().cell();
+    let along = |axis: usize, x: f64, across: f64| if axis == 0 { x } else { across };
+    Domain::new(
+        D::vector(|axis| along(axis, 0.0, cell.lower[axis])),
+        D::vector(|axis| along(axis, length, cell.upper[axis])),
+        Components::from_fn(|axis| axis > 0),
+    )
+}
+
+/// The box at the start: the medium streams, the outlet is the piston.
+fn fill<D: Dimension>(feed: &mut Feed<D>, regions: &Regions, frame: &Frame) -> Particles<D> {
+    let mut particles = Particles::default();
+    let medium = -frame.inlet_velocity();
+    for mut particle in feed.next_layer(regions.length, medium, Constraint::Free) {
+        let x = particle.position[0];
+        particle.constraint = regions.region_of(x).constraint();
+        if x < regions.outlet_end {
+            particle.velocity[0] = -frame.outlet_velocity();
+        }
+        particles.push(particle);
+    }
+    particles
+}

@@ -49,6 +49,8 @@ pub enum Ends {
     Free,
     /// At rest.
     Fixed,
+    /// The last node is the first one, a period further on (planar only).
+    Periodic,
 }
 
 /// Artificial viscosity of compressed zones, q = ρ (c_q Δu² + c_l c |Δu|), for problems with shocks.
@@ -166,13 +168,21 @@ impl<'a> Mesh<'a> {
 
     /// Kinetic and internal energy, per unit depth (and radian) [J/m].
     pub fn energy(&self) -> f64 {
-        let kinetic: f64 = self.node_mass.iter().zip(&self.velocity).map(|(m, u)| 0.5 * m * u * u).sum();
+        // The ends of a periodic mesh are one node: it counts once.
+        let nodes = self.velocity.len() - usize::from(self.scheme.ends == Ends::Periodic);
+        let pairs = self.node_mass.iter().zip(&self.velocity).take(nodes);
+        let kinetic: f64 = pairs.map(|(m, u)| 0.5 * m * u * u).sum();
         let internal: f64 = self.zone_mass.iter().zip(&self.zones).map(|(m, zone)| m * zone.energy).sum();
         kinetic + internal
     }
 
-    /// Velocity at `place` [m/s], linear between the nodes; zero outside.
+    /// Velocity at `place` [m/s], linear between the nodes; zero outside of the body, repeated where it is periodic.
     pub fn velocity_at(&self, place: f64) -> f64 {
+        let (first, last) = (self.radius[0], self.radius[self.radius.len() - 1]);
+        let place = match self.scheme.ends {
+            Ends::Periodic => first + (place - first).rem_euclid(last - first),
+            Ends::Free | Ends::Fixed => place,
+        };
         let j = self.radius.partition_point(|&r| r <= place);
         if j == 0 || j == self.radius.len() {
             return 0.0;
@@ -228,10 +238,12 @@ impl<'a> Mesh<'a> {
     }
 
     fn hold_ends(&mut self) {
-        if self.scheme.ends == Ends::Fixed {
-            let last = self.velocity.len() - 1;
-            self.velocity[0] = 0.0;
-            self.velocity[last] = 0.0;
+        let last = self.velocity.len() - 1;
+        match self.scheme.ends {
+            Ends::Free => {}
+            Ends::Fixed => (self.velocity[0], self.velocity[last]) = (0.0, 0.0),
+            // Equal but for round-off of the initial velocities.
+            Ends::Periodic => self.velocity[last] = self.velocity[0],
         }
     }
 
@@ -251,6 +263,17 @@ impl<'a> Mesh<'a> {
             self.force[k] += radial * lever - hoop;
             self.force[k + 1] -= radial * lever + hoop;
         }
+        self.join_ends(|mesh| &mut mesh.force);
+    }
+
+    /// Gives both ends of a periodic mesh the sum of both: they are one node.
+    fn join_ends(&mut self, column: impl Fn(&mut Self) -> &mut Vec<f64>) {
+        if self.scheme.ends == Ends::Periodic {
+            let column = column(self);
+            let last = column.len() - 1;
+            let sum = column[0] + column[last];
+            (column[0], column[last]) = (sum, sum);
+        }
     }
 
     /// Row sums of the linear finite element's mass matrix: second order up to the surface.
@@ -266,6 +289,7 @@ impl<'a> Mesh<'a> {
             self.node_mass[k] += density * weights[0] * (r[1] - r[0]);
             self.node_mass[k + 1] += density * weights[1] * (r[1] - r[0]);
         }
+        self.join_ends(|mesh| &mut mesh.node_mass);
     }
 }
 

@@ -17,8 +17,12 @@ fn sound_wave(zones: usize) -> Mesh<'static> {
         yield_strength: f64::INFINITY,
         sound_speed: 5105.0,
     };
-    let scheme =
-        Scheme { symmetry: Symmetry::Planar, ends: Ends::Fixed, cfl: 0.9, viscosity: Viscosity::default() };
+    let scheme = Scheme {
+        symmetry: Symmetry::Planar,
+        ends: Ends::Periodic,
+        cfl: 0.9,
+        viscosity: Viscosity::default(),
+    };
     let rest = Zone { density: COPPER_DENSITY, energy: 0.0, deviator: [0.0; 3] };
     let pulse = |x: f64| 5.0 * (-2.0 * (1e3 * x).powi(2)).exp();
     let mut mesh = Mesh::new(solid, scheme, [-5e-3, 5e-3], zones, |_| rest, pulse);
@@ -47,9 +51,10 @@ fn sound_wave_converges_with_second_order() {
 fn linear_solution_is_close_but_not_the_reference() {
     let mesh = sound_wave(3200);
     let pulse = |x: f64| 2.5 * (-2.0 * (1e3 * x).powi(2)).exp();
+    let train = |x: f64| pulse(x - 1e-2) + pulse(x) + pulse(x + 1e-2);
     let places = (0..2000).map(|k| -5e-3 + 1e-2 * (f64::from(k) + 0.5) / 2000.0);
     let error =
-        places.map(|x| (mesh.velocity_at(x) - pulse(x - 3e-3) - pulse(x + 3e-3)).abs()).sum::<f64>() / 2000.0;
+        places.map(|x| (mesh.velocity_at(x) - train(x - 3e-3) - train(x + 3e-3)).abs()).sum::<f64>() / 2000.0;
     println!("d'Alembert differs by {error:.3e} m/s");
     assert!((2e-4..2e-3).contains(&error), "{error}");
 }

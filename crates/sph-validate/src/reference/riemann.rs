@@ -258,13 +258,28 @@ impl Solution {
         self.left.iter().chain(self.right.iter().rev())
     }
 
+    /// The ray x/t [m/s] on which a wave has its middle stress.
+    pub fn middle_ray(&self, wave: &Wave) -> f64 {
+        if wave.head == wave.tail {
+            return wave.head;
+        }
+        // c = sqrt(K V) and σ is linear in ln V: the middle stress lies at the geometric mean of the densities.
+        let density = (wave.ahead.density * wave.behind.density).sqrt();
+        let [c, c_head] = [density, wave.ahead.density].map(|rho| (self.modulus(wave.branch) / rho).sqrt());
+        wave.ahead.velocity + wave.side.direction() * (2.0 * c_head - c)
+    }
+
+    fn modulus(&self, branch: Branch) -> f64 {
+        match branch {
+            Branch::Elastic => self.solid.elastic_modulus(),
+            Branch::Plastic => self.solid.bulk_modulus,
+        }
+    }
+
     /// Inside a fan u = s(x/t) - c and u + 2c is that of the head (in the direction of the wave).
     fn inside_fan(&self, wave: &Wave, ray: f64) -> State {
         let s = wave.side.direction();
-        let modulus = match wave.branch {
-            Branch::Elastic => self.solid.elastic_modulus(),
-            Branch::Plastic => self.solid.bulk_modulus,
-        };
+        let modulus = self.modulus(wave.branch);
         let head_speed = (modulus / wave.ahead.density).sqrt();
         let c = s * wave.ahead.velocity + 2.0 * head_speed - s * ray;
         let density = modulus / (c * c);

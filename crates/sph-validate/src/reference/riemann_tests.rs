@@ -90,6 +90,16 @@ fn sampled_profile_conserves_mass_and_momentum() {
 }
 
 #[test]
+fn middle_ray_has_the_middle_stress() {
+    let solution = paper(Release::Fan);
+    for wave in &solution.left {
+        let found = solution.sample(solution.middle_ray(wave)).stress;
+        close("stress on the middle ray", found / 1e9, wave.middle_stress() / 1e9, 1e-9);
+    }
+    assert_eq!(solution.middle_ray(&solution.right[1]), solution.right[1].head);
+}
+
+#[test]
 fn weak_jump_has_no_plastic_wave() {
     let solid = aluminum();
     let pushed = State { velocity: 10.0, ..solid.at_rest() };

@@ -23,8 +23,8 @@ mod sealed {
 }
 
 /// What a component can be: a number, or lanes of a register.
-pub trait Value: Copy + Debug + Send + Sync + 'static {}
-impl<T: Copy + Debug + Send + Sync + 'static> Value for T {}
+pub trait Value: Copy + Debug + Send + Sync {}
+impl<T: Copy + Debug + Send + Sync> Value for T {}
 
 /// A fixed number of equal things, one per axis or one per tensor component.
 pub trait Components<T>:
@@ -34,6 +34,11 @@ pub trait Components<T>:
     const COUNT: usize;
     /// Builds the components from their index.
     fn from_fn(component: impl FnMut(usize) -> T) -> Self;
+    /// The same in every component. Pair loops start from this and fill components in plain loops: closures would not
+    /// always be compiled into them.
+    fn splat(value: T) -> Self
+    where
+        T: Copy;
 }
 
 impl<T, const N: usize> Components<T> for [T; N] {
@@ -41,6 +46,13 @@ impl<T, const N: usize> Components<T> for [T; N] {
     #[inline(always)]
     fn from_fn(component: impl FnMut(usize) -> T) -> Self {
         std::array::from_fn(component)
+    }
+    #[inline(always)]
+    fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        [value; N]
     }
 }
 

@@ -7,6 +7,7 @@ pub mod correction;
 pub mod dimension;
 pub mod domain;
 pub mod error;
+pub mod geometry;
 pub mod gradient;
 pub mod kernel;
 pub mod lanes;
@@ -14,6 +15,7 @@ pub mod matrix;
 pub mod neighbors;
 pub mod particles;
 pub mod reduce;
+pub mod tiles;
 
 pub use dimension::{Components, Dim2, Dim3, Dimension, Vector};
 pub use domain::Domain;

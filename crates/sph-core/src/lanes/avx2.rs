@@ -117,30 +117,35 @@ impl Lanes for Avx2 {
     ) -> [Self; LANES] {
         // SAFETY: the invariant of this module; the caller promises that the records exist.
         unsafe {
-            let quarter = |l: usize, half: usize| {
+            let mut rows = [Self(_mm256_setzero_pd(), _mm256_setzero_pd()); LANES];
+            for l in 0..LANES {
                 let at = indices[l] as usize * stride + line;
                 debug_assert!(at < lines.len());
-                _mm256_load_pd(lines.as_ptr().add(at).cast::<f64>().add(4 * half))
-            };
-            let block =
-                |rows: usize, half: usize| transpose(std::array::from_fn(|l| quarter(4 * rows + l, half)));
-            let (a, b, c, d) = (block(0, 0), block(1, 0), block(0, 1), block(1, 1));
-            std::array::from_fn(|k| if k < 4 { Self(a[k], b[k]) } else { Self(c[k - 4], d[k - 4]) })
+                let row = lines.as_ptr().add(at).cast::<f64>();
+                rows[l] = Self(_mm256_load_pd(row), _mm256_load_pd(row.add(4)));
+            }
+            Self::transpose(rows)
         }
     }
     #[inline(always)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         // SAFETY: the invariant of this module.
         unsafe {
-            let quarter = |rows: usize, right: bool| {
-                let pick = |l: usize| {
-                    let row = block[4 * rows + l];
-                    if right { row.1 } else { row.0 }
-                };
-                transpose(std::array::from_fn(pick))
-            };
-            let (a, b, c, d) = (quarter(0, false), quarter(1, false), quarter(0, true), quarter(1, true));
-            std::array::from_fn(|k| if k < 4 { Self(a[k], b[k]) } else { Self(c[k - 4], d[k - 4]) })
+            let r = block;
+            let a = transpose([r[0].0, r[1].0, r[2].0, r[3].0]);
+            let b = transpose([r[4].0, r[5].0, r[6].0, r[7].0]);
+            let c = transpose([r[0].1, r[1].1, r[2].1, r[3].1]);
+            let d = transpose([r[4].1, r[5].1, r[6].1, r[7].1]);
+            [
+                Self(a[0], b[0]),
+                Self(a[1], b[1]),
+                Self(a[2], b[2]),
+                Self(a[3], b[3]),
+                Self(c[0], d[0]),
+                Self(c[1], d[1]),
+                Self(c[2], d[2]),
+                Self(c[3], d[3]),
+            ]
         }
     }
     #[inline(always)]

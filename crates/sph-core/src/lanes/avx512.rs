@@ -108,18 +108,25 @@ impl Lanes for Avx512 {
     ) -> [Self; LANES] {
         // SAFETY: the invariant of this module; the caller promises that the records exist.
         unsafe {
-            let row = |l: usize| {
+            let mut rows = [_mm512_setzero_pd(); LANES];
+            for l in 0..LANES {
                 let at = indices[l] as usize * stride + line;
                 debug_assert!(at < lines.len());
-                _mm512_load_pd(lines.as_ptr().add(at).cast())
-            };
-            transpose(std::array::from_fn(row)).map(Self)
+                rows[l] = _mm512_load_pd(lines.as_ptr().add(at).cast());
+            }
+            wrap(transpose(rows))
         }
     }
     #[inline(always)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         // SAFETY: the invariant of this module.
-        unsafe { transpose(block.map(|row| row.0)).map(Self) }
+        unsafe {
+            let mut rows = [_mm512_setzero_pd(); LANES];
+            for l in 0..LANES {
+                rows[l] = block[l].0;
+            }
+            wrap(transpose(rows))
+        }
     }
     #[inline(always)]
     fn any_less(self, limit: Self) -> bool {
@@ -141,35 +148,38 @@ impl Lanes for Avx512 {
     }
 }
 
+#[inline(always)]
+fn wrap(r: [__m512d; LANES]) -> [Avx512; LANES] {
+    let [a, b, c, d, e, f, g, h] = r;
+    [Avx512(a), Avx512(b), Avx512(c), Avx512(d), Avx512(e), Avx512(f), Avx512(g), Avx512(h)]
+}
+
 /// Rows to columns of an 8 × 8 block: pairs of numbers, then pairs of quarters, then halves.
 #[inline(always)]
 unsafe fn transpose(r: [__m512d; LANES]) -> [__m512d; LANES] {
+    const LOW: i32 = 0b10_00_10_00;
+    const HIGH: i32 = 0b11_01_11_01;
     // SAFETY: the invariant of this module.
     unsafe {
-        // a[k] holds numbers (0, 2, 4, 6) + k % 2 of rows 2 (k / 2) and 2 (k / 2) + 1, interleaved.
-        let a: [__m512d; LANES] = std::array::from_fn(|k| {
-            let (p, q) = (r[k & !1], r[k | 1]);
-            if k % 2 == 0 { _mm512_unpacklo_pd(p, q) } else { _mm512_unpackhi_pd(p, q) }
-        });
-        // Quarters of four rows: b[h][k] has numbers k and k + 4 of rows 4 h .. 4 h + 4.
-        let half = |h: usize| -> [__m512d; 4] {
-            let [e0, o0, e1, o1] = [a[4 * h], a[4 * h + 1], a[4 * h + 2], a[4 * h + 3]];
-            [
-                _mm512_shuffle_f64x2::<0b10_00_10_00>(e0, e1),
-                _mm512_shuffle_f64x2::<0b10_00_10_00>(o0, o1),
-                _mm512_shuffle_f64x2::<0b11_01_11_01>(e0, e1),
-                _mm512_shuffle_f64x2::<0b11_01_11_01>(o0, o1),
-            ]
-        };
-        // shuffle(e0, e1, 10_00_10_00) = quarters (e0.0, e0.2, e1.0, e1.2): numbers 0, 4 of rows 0-1, then of rows 2-3.
-        let (low, high) = (half(0), half(1));
-        std::array::from_fn(|k| {
-            let (p, q) = (low[k % 4], high[k % 4]);
-            if k < 4 {
-                _mm512_shuffle_f64x2::<0b10_00_10_00>(p, q)
-            } else {
-                _mm512_shuffle_f64x2::<0b11_01_11_01>(p, q)
-            }
-        })
+        // Even and odd numbers of rows 2 k and 2 k + 1, interleaved: e = (r0.0 r1.0 r0.2 r1.2 ...), o = (r0.1 r1.1 ...).
+        let (e0, o0) = (_mm512_unpacklo_pd(r[0], r[1]), _mm512_unpackhi_pd(r[0], r[1]));
+        let (e1, o1) = (_mm512_unpacklo_pd(r[2], r[3]), _mm512_unpackhi_pd(r[2], r[3]));
+        let (e2, o2) = (_mm512_unpacklo_pd(r[4], r[5]), _mm512_unpackhi_pd(r[4], r[5]));
+        let (e3, o3) = (_mm512_unpacklo_pd(r[6], r[7]), _mm512_unpackhi_pd(r[6], r[7]));
+        // Quarters (0, 2) and (1, 3) of two of them: numbers (0, 4) and (2, 6), or (1, 5) and (3, 7), of four rows.
+        let (a0, a1) = (_mm512_shuffle_f64x2::<LOW>(e0, e1), _mm512_shuffle_f64x2::<LOW>(e2, e3));
+        let (b0, b1) = (_mm512_shuffle_f64x2::<LOW>(o0, o1), _mm512_shuffle_f64x2::<LOW>(o2, o3));
+        let (c0, c1) = (_mm512_shuffle_f64x2::<HIGH>(e0, e1), _mm512_shuffle_f64x2::<HIGH>(e2, e3));
+        let (d0, d1) = (_mm512_shuffle_f64x2::<HIGH>(o0, o1), _mm512_shuffle_f64x2::<HIGH>(o2, o3));
+        [
+            _mm512_shuffle_f64x2::<LOW>(a0, a1),
+            _mm512_shuffle_f64x2::<LOW>(b0, b1),
+            _mm512_shuffle_f64x2::<LOW>(c0, c1),
+            _mm512_shuffle_f64x2::<LOW>(d0, d1),
+            _mm512_shuffle_f64x2::<HIGH>(a0, a1),
+            _mm512_shuffle_f64x2::<HIGH>(b0, b1),
+            _mm512_shuffle_f64x2::<HIGH>(c0, c1),
+            _mm512_shuffle_f64x2::<HIGH>(d0, d1),
+        ]
     }
 }

@@ -93,7 +93,11 @@ pub trait Lanes: Real {
     /// Number `indices[l]` of a column, for every lane.
     #[inline(always)]
     fn gather(column: &[f64], indices: &[u32; LANES]) -> Self {
-        Self::load(&std::array::from_fn(|l| column[indices[l] as usize]))
+        let mut numbers = [0.0; LANES];
+        for l in 0..LANES {
+            numbers[l] = column[indices[l] as usize];
+        }
+        Self::load(&numbers)
     }
     /// Rows to columns: lane `l` of element `k` becomes lane `k` of element `l`.
     fn transpose(block: [Self; LANES]) -> [Self; LANES];

@@ -1,4 +1,7 @@
 //! Eight lanes as an array: the reference, and what machines without AVX2 run.
+//!
+//! Operations are calls, not inlined: pair loops have hundreds of them, and eight copies of each would take minutes to
+//! compile and gain little.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -20,7 +23,7 @@ macro_rules! operator {
     ($trait:ident, $method:ident) => {
         impl $trait for Plain {
             type Output = Self;
-            #[inline(always)]
+            #[inline(never)]
             fn $method(self, other: Self) -> Self {
                 self.map2(other, |a, b| $trait::$method(a, b))
             }
@@ -34,14 +37,14 @@ operator!(Div, div);
 
 impl Neg for Plain {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn neg(self) -> Self {
         Self(self.0.map(|a| -a))
     }
 }
 
 impl AddAssign for Plain {
-    #[inline(always)]
+    #[inline(never)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
@@ -52,27 +55,27 @@ impl Real for Plain {
     fn splat(value: f64) -> Self {
         Self([value; LANES])
     }
-    #[inline(always)]
+    #[inline(never)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         Self(std::array::from_fn(|l| f64::mul_add(self.0[l], b.0[l], c.0[l])))
     }
-    #[inline(always)]
+    #[inline(never)]
     fn sqrt(self) -> Self {
         Self(self.0.map(f64::sqrt))
     }
-    #[inline(always)]
+    #[inline(never)]
     fn max(self, other: Self) -> Self {
         self.map2(other, Real::max)
     }
-    #[inline(always)]
+    #[inline(never)]
     fn min(self, other: Self) -> Self {
         self.map2(other, Real::min)
     }
-    #[inline(always)]
+    #[inline(never)]
     fn abs(self) -> Self {
         Self(self.0.map(f64::abs))
     }
-    #[inline(always)]
+    #[inline(never)]
     fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
         Self(std::array::from_fn(|l| if self.0[l] < limit.0[l] { yes.0[l] } else { no.0[l] }))
     }
@@ -87,7 +90,7 @@ impl Lanes for Plain {
     fn store(self, target: &mut [f64; LANES]) {
         *target = self.0;
     }
-    #[inline(always)]
+    #[inline(never)]
     unsafe fn load_records(
         lines: &[Line],
         stride: usize,
@@ -98,11 +101,11 @@ impl Lanes for Plain {
             std::array::from_fn(|l| &lines[indices[l] as usize * stride + line].0);
         std::array::from_fn(|k| Self(std::array::from_fn(|l| records[l][k])))
     }
-    #[inline(always)]
+    #[inline(never)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
     }
-    #[inline(always)]
+    #[inline(never)]
     fn any_less(self, limit: Self) -> bool {
         (0..LANES).any(|l| self.0[l] < limit.0[l])
     }

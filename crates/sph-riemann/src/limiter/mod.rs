@@ -1,0 +1,166 @@
+//! Slope limiters for the reconstruction to the contact.
+//!
+//! A particle sees a neighbour's value differ by d = Φ_j - Φ_i and its own gradient promise g = ∇Φ_i·r_ji. A limiter
+//! returns **half** the limited difference, which is what reconstruction adds:
+//!
+//! ```text
+//! Φ_l = Φ_i + half(d, ∇Φ_i·r_ji),   Φ_r = Φ_j - half(d, ∇Φ_j·r_ji)      (paper eqs. (13)-(15))
+//! ```
+//!
+//! The printed limiter compares d with the central g and is not TVD: it overshoots (2.619 for 2.500 in a sound pulse).
+//! The others compare d with the upwind difference u = 2 g - d.
+//!
+//! **A new limiter** is a type with [`SlopeLimiter`], one variant of [`Limiter`] and one arm of `with_limiter!`.
+
+use serde::{Deserialize, Serialize};
+use sph_core::lanes::Real;
+
+/// Half the limited difference.
+pub trait SlopeLimiter: Copy + Send + Sync + 'static {
+    /// ½ of the limited difference from d = Φ_j - Φ_i and g = ∇Φ·r_ji, in the unit of Φ.
+    fn half<R: Real>(difference: R, gradient: R) -> R;
+}
+
+/// The limiters at hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Limiter {
+    /// minmod(d, g): the paper's (14), (15).
+    MinmodPrinted,
+    /// minmod(d, 2 g - d).
+    MinmodTvd,
+    /// van Leer's harmonic mean of d and 2 g - d.
+    #[default]
+    VanLeer,
+    /// Monotonized central: minmod(g, 2 d, 2 (2 g - d)).
+    MonotonizedCentral,
+}
+
+impl Limiter {
+    /// Every limiter, in the order of declaration.
+    pub const ALL: [Self; 4] =
+        [Self::MinmodPrinted, Self::MinmodTvd, Self::VanLeer, Self::MonotonizedCentral];
+
+    /// Half the limited difference, for one pair of numbers.
+    pub fn half(self, difference: f64, gradient: f64) -> f64 {
+        with_limiter!(self, M => M::half(difference, gradient))
+    }
+}
+
+/// Runs an expression with `M` standing for the type of the limiter.
+macro_rules! with_limiter {
+    ($limiter:expr, $M:ident => $body:expr) => {
+        match $limiter {
+            $crate::limiter::Limiter::MinmodPrinted => {
+                type $M = $crate::limiter::MinmodPrinted;
+                $body
+            }
+            $crate::limiter::Limiter::MinmodTvd => {
+                type $M = $crate::limiter::MinmodTvd;
+                $body
+            }
+            $crate::limiter::Limiter::VanLeer => {
+                type $M = $crate::limiter::VanLeer;
+                $body
+            }
+            $crate::limiter::Limiter::MonotonizedCentral => {
+                type $M = $crate::limiter::MonotonizedCentral;
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_limiter;
+
+/// minmod(d, g).
+#[derive(Clone, Copy, Debug)]
+pub struct MinmodPrinted;
+/// minmod(d, 2 g - d).
+#[derive(Clone, Copy, Debug)]
+pub struct MinmodTvd;
+/// Harmonic mean of d and 2 g - d.
+#[derive(Clone, Copy, Debug)]
+pub struct VanLeer;
+/// minmod(g, 2 d, 2 (2 g - d)).
+#[derive(Clone, Copy, Debug)]
+pub struct MonotonizedCentral;
+
+/// The number of least absolute value if both have one sign, else zero: max(0, min(a, b)) + min(0, max(a, b)).
+#[inline(always)]
+fn minmod<R: Real>(a: R, b: R) -> R {
+    a.min(b).max(R::zero()) + a.max(b).min(R::zero())
+}
+
+impl SlopeLimiter for MinmodPrinted {
+    #[inline(always)]
+    fn half<R: Real>(difference: R, gradient: R) -> R {
+        R::splat(0.5) * minmod(difference, gradient)
+    }
+}
+
+impl SlopeLimiter for MinmodTvd {
+    #[inline(always)]
+    fn half<R: Real>(difference: R, gradient: R) -> R {
+        R::splat(0.5) * minmod(difference, gradient + gradient - difference)
+    }
+}
+
+impl SlopeLimiter for VanLeer {
+    /// With t = d/g the harmonic mean 2 d u/(d + u) is g t (2 - t) where d u > 0, that is where 0 < t < 2. A gradient of
+    /// zero gives t = ±∞ or NaN, and `max` turns both into zero.
+    #[inline(always)]
+    fn half<R: Real>(difference: R, gradient: R) -> R {
+        let t = difference / gradient;
+        gradient * (t * (R::splat(-0.5).mul_add(t, R::one()))).max(R::zero())
+    }
+}
+
+impl SlopeLimiter for MonotonizedCentral {
+    #[inline(always)]
+    fn half<R: Real>(difference: R, gradient: R) -> R {
+        minmod(R::splat(0.5) * gradient, minmod(difference, gradient + gradient - difference))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn on_a_straight_line_every_limiter_gives_half_the_difference() {
+        for limiter in Limiter::ALL {
+            for d in [-3.0, -1e-9, 0.0, 2.5e9] {
+                assert_eq!(limiter.half(d, d), 0.5 * d, "{limiter:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn at_an_extremum_every_limiter_gives_zero() {
+        for limiter in Limiter::ALL {
+            assert_eq!(limiter.half(1.0, -0.5), 0.0, "{limiter:?}");
+            assert_eq!(limiter.half(1.0, 0.0), 0.0, "{limiter:?}");
+            assert_eq!(limiter.half(0.0, 0.0), 0.0, "{limiter:?}");
+        }
+    }
+
+    #[test]
+    fn upwind_limiters_stay_between_the_values() {
+        // Φ_l must lie between Φ_i and Φ_j, and not pass the upwind neighbour mirrored: 0 ≤ half ≤ d and half ≤ 2 g - d.
+        for limiter in [Limiter::MinmodTvd, Limiter::VanLeer, Limiter::MonotonizedCentral] {
+            for k in -40..=40 {
+                let g = 0.1 * k as f64;
+                let half = limiter.half(1.0, g);
+                let upwind = (2.0 * g - 1.0).max(0.0);
+                assert!((0.0..=1.0).contains(&half), "{limiter:?} {g} {half}");
+                assert!(half <= upwind + 1e-15, "{limiter:?} {g} {half}");
+            }
+        }
+    }
+
+    #[test]
+    fn van_leer_is_the_harmonic_mean() {
+        let (d, g): (f64, f64) = (0.7, 1.1);
+        let u = 2.0 * g - d;
+        assert!((Limiter::VanLeer.half(d, g) - d * u / (d + u)).abs() < 1e-15);
+    }
+}

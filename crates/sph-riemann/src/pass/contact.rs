@@ -1,0 +1,335 @@
+//! Second pass: the contact of each pair.
+//!
+//! ```text
+//! Φ_l, Φ_r  reconstructed from both sides                                       (paper eqs. (13)-(15))
+//! U*, t*    from the acoustic contact along R, S, T with tractions σ ½(K_i + K_j) e_R
+//! f_i      += w t*          w = 2 V_j |W'_ij| / h_ij                            (paper eq. (10), per volume)
+//! p_i      += w t*·U*                                                           (paper eq. (11), per volume)
+//! R_ab     += w e_a (U* - U_i)_b                                                (paper eqs. (9), (20), raw)
+//! ```
+//!
+//! With the spectral cap each side exerts its own traction T_i = σ_i K_i e_R - c_i × e_R, the adjoint of its velocity
+//! gradient, while U* keeps the mean correction. Everything is antisymmetric in the exchange of i and j: momentum and
+//! total energy are conserved to round-off.
+
+use sph_core::dimension::Components;
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
+
+use super::{Pass, Tile, load_line, own_indices};
+use crate::contact::acoustic::velocity_change;
+use crate::dimension::{SolidDimension, cross, dot, times};
+use crate::limiter::{Limiter, SlopeLimiter, with_limiter};
+use crate::record::{Row, Sides};
+use crate::scheme::SurfaceTreatment;
+
+/// Sum of transverse impedances of two fluids [kg/(m² s)]: small against any other, not so small that its inverse would
+/// not be finite.
+const NO_IMPEDANCE: f64 = 1e-30;
+
+/// The pass over one tile. `RECONSTRUCT` is false for piecewise constant sides without correction.
+pub(super) struct ContactTile<'a, 'b, D: SolidDimension, const RECONSTRUCT: bool> {
+    pub pass: &'a Pass<'b, D>,
+    pub tile: Tile<'a>,
+    pub limiter: Limiter,
+}
+
+/// What the contact of a pair gives to the left particle.
+pub(super) struct PairContact<D: SolidDimension, L: Lanes> {
+    /// w e_R = 2 V_j ∇_iW_ij, without correction [1/m].
+    pub gradient: D::Axes<L>,
+    /// w t* [N/m³].
+    pub force: D::Axes<L>,
+    /// U* [m/s].
+    pub velocity: D::Axes<L>,
+    /// (U_j - U_i)² [m²/s²].
+    pub relative_speed_squared: L,
+}
+
+impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, '_, D, RECONSTRUCT> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { pass, tile, limiter } = self;
+        let lists = pass.tile_lists(tile.index);
+        let first_block = tile.index * sph_core::neighbors::TILE_BLOCKS;
+        for (b, rows) in tile.rows.chunks_exact_mut(Row::count::<D>()).enumerate() {
+            let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
+            let left = Left::<D, L, RECONSTRUCT>::load(pass, first_block + b);
+            left.gather(pass, limiter, slots, rows);
+        }
+    }
+}
+
+/// The left sides of eight pairs.
+pub(super) struct Left<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> {
+    record: D::SidesRecord<L>,
+    size: L,
+}
+
+impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT> {
+    /// Lines of a record that are read.
+    const LINES: usize =
+        if RECONSTRUCT { D::SIDES_LINES } else { (Sides::correction::<D>() - 1) / LANES + 1 };
+
+    #[inline(always)]
+    pub fn load(pass: &Pass<'_, D>, block: usize) -> Self {
+        let indices = own_indices(block);
+        let mut record = D::SidesRecord::<L>::splat(L::zero());
+        for line in 0..Self::LINES {
+            // SAFETY: the particles of a block are below `n_padded`, and records reach to `n_records`.
+            unsafe { load_line(&mut record, pass.records, D::SIDES_LINES, line, &indices) };
+        }
+        Self { record, size: pass.smoothing.own(&indices) }
+    }
+
+    /// Sums over the neighbours, into the rows of the block.
+    #[inline(always)]
+    fn gather(&self, pass: &Pass<'_, D>, limiter: Limiter, slots: &[[u32; LANES]], rows: &mut [Line]) {
+        let mut force = D::Axes::<L>::splat(L::zero());
+        let mut gradient = D::Axes::<D::Axes<L>>::splat(force);
+        let (mut power, mut fastest) = (L::zero(), L::zero());
+        for slot in slots {
+            let Some(pair) = self.contact(pass, limiter, slot) else { continue };
+            for b in 0..D::COUNT {
+                force[b] += pair.force[b];
+                let change = pair.velocity[b] - self.record[Sides::fields::<D>() + b];
+                for a in 0..D::COUNT {
+                    gradient[a][b] = pair.gradient[a].mul_add(change, gradient[a][b]);
+                }
+            }
+            power += dot::<D, L>(&pair.force, &pair.velocity);
+            fastest = pair.relative_speed_squared.max(fastest);
+        }
+        power.store(&mut rows[Row::POWER].0);
+        fastest.store(&mut rows[Row::RELATIVE_SPEED_SQUARED].0);
+        for a in 0..D::COUNT {
+            force[a].store(&mut rows[Row::FORCE + a].0);
+            for b in 0..D::COUNT {
+                gradient[a][b].store(&mut rows[Row::velocity_gradient::<D>() + a * D::COUNT + b].0);
+            }
+        }
+    }
+
+    /// The contacts of eight pairs; `None` if all are out of reach.
+    #[inline(always)]
+    pub fn contact(
+        &self,
+        pass: &Pass<'_, D>,
+        limiter: Limiter,
+        slot: &[u32; LANES],
+    ) -> Option<PairContact<D, L>> {
+        let left = &self.record;
+        let mut right = D::SidesRecord::<L>::splat(L::zero());
+        // SAFETY: entries of a list are below `n_records`, the length of the records.
+        unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, 0, slot) };
+        let mut dx = D::Axes::<L>::splat(L::zero());
+        for a in 0..D::COUNT {
+            dx[a] = right[a] - left[a];
+        }
+        let r = dot::<D, L>(&dx, &dx).sqrt();
+        let scales = pass.smoothing.scales(self.size, slot);
+        let q = r * scales.inverse_h;
+        if !q.any_less(L::splat(pass.smoothing.support())) {
+            return None;
+        }
+        for line in 1..Self::LINES {
+            // SAFETY: as above.
+            unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, line, slot) };
+        }
+        let volume = right[Sides::volume::<D>()];
+        let weight = (volume + volume) * scales.slope * pass.smoothing.minus_slope_over_q(q);
+        // A particle stands in for missing neighbours of its own: e = 0 there, and all is zero.
+        let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
+        let (mut gradient, mut e, mut du) = (dx, dx, dx);
+        for a in 0..D::COUNT {
+            gradient[a] = weight * dx[a];
+            e[a] = dx[a] * inverse_r;
+            du[a] = right[Sides::fields::<D>() + a] - left[Sides::fields::<D>() + a];
+        }
+        let sides = Pair { left, right: &right, dx: &dx, e: &e };
+        let (velocity, mut force) = sides.star::<RECONSTRUCT>(pass, limiter);
+        let weight = weight * r;
+        for a in 0..D::COUNT {
+            force[a] = weight * force[a];
+        }
+        Some(PairContact { gradient, force, velocity, relative_speed_squared: dot::<D, L>(&du, &du) })
+    }
+}
+
+/// Both sides of eight contacts.
+struct Pair<'a, D: SolidDimension, L: Lanes> {
+    left: &'a D::SidesRecord<L>,
+    right: &'a D::SidesRecord<L>,
+    dx: &'a D::Axes<L>,
+    e: &'a D::Axes<L>,
+}
+
+impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
+    /// Velocity and traction at the contact.
+    #[inline(always)]
+    fn star<const RECONSTRUCT: bool>(
+        &self,
+        pass: &Pass<'_, D>,
+        limiter: Limiter,
+    ) -> (D::Axes<L>, D::Axes<L>) {
+        let (phi_l, phi_r) = self.reconstruct::<RECONSTRUCT>(limiter);
+        let mut du = D::Axes::<L>::splat(L::zero());
+        for a in 0..D::COUNT {
+            du[a] = phi_r[a] - phi_l[a];
+        }
+        let (mut stress_l, mut stress_r) =
+            (D::Symmetric::<L>::splat(L::zero()), D::Symmetric::<L>::splat(L::zero()));
+        for k in 0..D::STRESS_COUNT {
+            stress_l[k] = phi_l[D::COUNT + k];
+            stress_r[k] = phi_r[D::COUNT + k];
+        }
+        let (left_e, right_e) = if RECONSTRUCT {
+            (Self::corrected(self.left, self.e), Self::corrected(self.right, self.e))
+        } else {
+            (*self.e, *self.e)
+        };
+        let mut mean_e = left_e;
+        for a in 0..D::COUNT {
+            mean_e[a] = L::splat(0.5) * (left_e[a] + right_e[a]);
+        }
+        let impedances = Impedances::<L>::of::<D>(self.left, self.right);
+        let mean_l = times::<D, L>(&stress_l, &mean_e);
+        let mean_r = times::<D, L>(&stress_r, &mean_e);
+        let change = impedances.change::<D>(&mean_l, &mean_r, &du, self.e);
+        let mut velocity = du;
+        for a in 0..D::COUNT {
+            velocity[a] = phi_l[a] + change.total[a];
+        }
+        if !matches!(pass.surface, SurfaceTreatment::SpectralCap { .. }) {
+            return (velocity, impedances.traction::<D>(&mean_l, &change, self.e));
+        }
+        let own_l = self.own_traction(&stress_l, &left_e, self.left);
+        let own_r = self.own_traction(&stress_r, &right_e, self.right);
+        let own_change = impedances.change::<D>(&own_l, &own_r, &du, self.e);
+        (velocity, impedances.traction::<D>(&own_l, &own_change, self.e))
+    }
+
+    /// K e.
+    #[inline(always)]
+    fn corrected(record: &D::SidesRecord<L>, e: &D::Axes<L>) -> D::Axes<L> {
+        let mut k = D::Symmetric::<L>::splat(L::zero());
+        for c in 0..D::STRESS_COUNT {
+            k[c] = record[Sides::correction::<D>() + c];
+        }
+        times::<D, L>(&k, e)
+    }
+
+    /// T = σ K e - c × e.
+    #[inline(always)]
+    fn own_traction(
+        &self,
+        stress: &D::Symmetric<L>,
+        corrected_e: &D::Axes<L>,
+        record: &D::SidesRecord<L>,
+    ) -> D::Axes<L> {
+        let mut torque = D::Spin::<L>::splat(L::zero());
+        for c in 0..D::SPIN_COUNT {
+            torque[c] = record[Sides::torque::<D>() + c];
+        }
+        let turn = cross::<D, L>(&torque, self.e);
+        let mut traction = times::<D, L>(stress, corrected_e);
+        for a in 0..D::COUNT {
+            traction[a] = traction[a] - turn[a];
+        }
+        traction
+    }
+
+    /// Φ_l and Φ_r.
+    #[inline(always)]
+    fn reconstruct<const RECONSTRUCT: bool>(&self, limiter: Limiter) -> (D::Fields<L>, D::Fields<L>) {
+        let mut phi_l = D::Fields::<L>::splat(L::zero());
+        let mut phi_r = phi_l;
+        for f in 0..D::COUNT + D::STRESS_COUNT {
+            phi_l[f] = self.left[Sides::fields::<D>() + f];
+            phi_r[f] = self.right[Sides::fields::<D>() + f];
+        }
+        if RECONSTRUCT {
+            with_limiter!(limiter, M => self.limited::<M>(&mut phi_l, &mut phi_r));
+        }
+        (phi_l, phi_r)
+    }
+
+    #[inline(always)]
+    fn limited<M: SlopeLimiter>(&self, phi_l: &mut D::Fields<L>, phi_r: &mut D::Fields<L>) {
+        for f in 0..D::COUNT + D::STRESS_COUNT {
+            let difference = phi_r[f] - phi_l[f];
+            let first = Sides::slopes::<D>() + f * D::COUNT;
+            let mut along_l = self.left[first] * self.dx[0];
+            let mut along_r = self.right[first] * self.dx[0];
+            for a in 1..D::COUNT {
+                along_l = self.left[first + a].mul_add(self.dx[a], along_l);
+                along_r = self.right[first + a].mul_add(self.dx[a], along_r);
+            }
+            phi_l[f] += M::half(difference, along_l);
+            phi_r[f] = phi_r[f] - M::half(difference, along_r);
+        }
+    }
+}
+
+/// Impedances of both sides, along R and across.
+struct Impedances<L> {
+    left: [L; 2],
+    right: [L; 2],
+    inverse_sum: [L; 2],
+}
+
+/// The change A of the left velocity: its part along R, and all of it.
+struct Change<D: SolidDimension, L: Lanes> {
+    along: L,
+    total: D::Axes<L>,
+}
+
+impl<L: Lanes> Impedances<L> {
+    #[inline(always)]
+    fn of<D: SolidDimension>(left: &D::SidesRecord<L>, right: &D::SidesRecord<L>) -> Self {
+        let (l, t) = (Sides::longitudinal::<D>(), Sides::transverse::<D>());
+        let (left, right) = ([left[l], left[t]], [right[l], right[t]]);
+        // Fluids have no transverse impedance: nothing is passed on across R.
+        let sum = [left[0] + right[0], (left[1] + right[1]).max(L::splat(NO_IMPEDANCE))];
+        // One division for both.
+        let inverse = L::one() / (sum[0] * sum[1]);
+        Self { left, right, inverse_sum: [sum[1] * inverse, sum[0] * inverse] }
+    }
+
+    #[inline(always)]
+    fn change<D: SolidDimension>(
+        &self,
+        left: &D::Axes<L>,
+        right: &D::Axes<L>,
+        du: &D::Axes<L>,
+        e: &D::Axes<L>,
+    ) -> Change<D, L> {
+        let mut dt = *du;
+        for a in 0..D::COUNT {
+            dt[a] = right[a] - left[a];
+        }
+        let (dt_r, du_r) = (dot::<D, L>(&dt, e), dot::<D, L>(du, e));
+        let along = velocity_change(dt_r, du_r, self.right[0], self.inverse_sum[0]);
+        let mut total = *du;
+        for a in 0..D::COUNT {
+            let (dt_t, du_t) = (dt[a] - dt_r * e[a], du[a] - du_r * e[a]);
+            total[a] = along * e[a] + velocity_change(dt_t, du_t, self.right[1], self.inverse_sum[1]);
+        }
+        Change { along, total }
+    }
+
+    /// t* = t_l + z_l A, direction by direction.
+    #[inline(always)]
+    fn traction<D: SolidDimension>(
+        &self,
+        left: &D::Axes<L>,
+        change: &Change<D, L>,
+        e: &D::Axes<L>,
+    ) -> D::Axes<L> {
+        let extra = (self.left[0] - self.left[1]) * change.along;
+        let mut traction = *left;
+        for a in 0..D::COUNT {
+            traction[a] += self.left[1].mul_add(change.total[a], extra * e[a]);
+        }
+        traction
+    }
+}

@@ -1,0 +1,170 @@
+//! What can be chosen of the scheme.
+
+use serde::{Deserialize, Serialize};
+use sph_core::kernel::KernelFamily;
+
+use crate::limiter::Limiter;
+
+/// The named schemes. They share one step; see [`crate::simulation`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Scheme {
+    /// Contact SPH: piecewise constant sides, no kernel correction, explicit Euler. The paper's baseline.
+    Csph,
+    /// TKC-MUSCL-SPH as printed: corrected kernel, reconstruction with the printed limiter, explicit Euler. Stable only
+    /// up to a Courant number of about 0.1.
+    TkcMuscl,
+    /// Corrected kernel, reconstruction from values advanced by half a step (MUSCL-Hancock), upwind-biased limiter:
+    /// second order.
+    #[default]
+    TkcHancock,
+}
+
+impl Scheme {
+    /// Every scheme, in the order of declaration.
+    pub const ALL: [Self; 3] = [Self::Csph, Self::TkcMuscl, Self::TkcHancock];
+
+    /// True if gradients are needed before the contact.
+    pub fn reconstructs(self) -> bool {
+        self != Self::Csph
+    }
+
+    /// True if sides are advanced by half a step before the contact.
+    pub fn is_time_centered(self) -> bool {
+        self == Self::TkcHancock
+    }
+}
+
+/// What stands in the place of L⁻¹ near free surfaces, where L loses its neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SurfaceTreatment {
+    /// The rule as printed: I in place of L⁻¹ where the least eigenvalue of **L⁻¹** is below 0.75, and within a smoothing
+    /// length of such particles. Flags almost nothing, since those eigenvalues rise at a surface.
+    Printed {
+        /// I as well where det L is below this [-]; 0.01-0.1.
+        determinant_floor: f64,
+    },
+    /// The rule as its source has it: least eigenvalue of **L** below 0.75.
+    Intended {
+        /// I as well where det L is below this [-]; 0.01-0.1.
+        determinant_floor: f64,
+    },
+    /// L⁻¹ everywhere.
+    None,
+    /// K = Σ min(1/λ, cap) n⊗n over the eigenpairs of L, everywhere; velocity gradient exact in rotation, adjoint
+    /// traction, half step of the velocity centred on the true acceleration. No rule.
+    SpectralCap {
+        /// Largest eigenvalue of K [-]; 2.5.
+        cap: f64,
+    },
+}
+
+impl Default for SurfaceTreatment {
+    fn default() -> Self {
+        Self::SpectralCap { cap: 2.5 }
+    }
+}
+
+/// How the density is kept at the density of the packing where pores have shut; see [`crate::volume`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VolumeConsistency {
+    /// Smoothing length of the volume sum in particle sizes, h_S / D [-].
+    pub width: f64,
+    /// Rate κ of the relaxation in units of c/h [-].
+    pub rate: f64,
+    /// |ΔS| below which nothing is done [-].
+    pub tolerance: f64,
+    /// Deficit δ of the volume sum beyond which a particle lines a void and is left alone [-].
+    pub void_deficit: f64,
+}
+
+impl Default for VolumeConsistency {
+    fn default() -> Self {
+        Self { width: 2.0, rate: 0.05, tolerance: 0.001, void_deficit: 0.1 }
+    }
+}
+
+/// All settings of the scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The limiter; not used by [`Scheme::Csph`].
+    pub limiter: Limiter,
+    /// The smoothing kernel.
+    pub kernel: KernelFamily,
+    /// θ in h_ij = θ (D_i + D_j) [-]; 0.5-0.7.
+    pub smoothing: f64,
+    /// Courant number C [-].
+    pub courant: f64,
+    /// What is done at free surfaces; not used by [`Scheme::Csph`].
+    pub surface: SurfaceTreatment,
+    /// Skin of the neighbour lists, in particle sizes [-].
+    pub skin: f64,
+    /// Keeps the density at that of the packing, or not.
+    pub volume_consistency: Option<VolumeConsistency>,
+}
+
+impl Settings {
+    /// Sensible settings for a scheme: θ = 0.5, the Courant number that the scheme bears in pore collapse, and for the
+    /// printed scheme everything as printed.
+    pub fn for_scheme(scheme: Scheme) -> Self {
+        let (limiter, courant, surface) = match scheme {
+            Scheme::Csph => (Limiter::VanLeer, 0.4, SurfaceTreatment::None),
+            Scheme::TkcMuscl => {
+                (Limiter::MinmodPrinted, 0.1, SurfaceTreatment::Printed { determinant_floor: 0.01 })
+            }
+            Scheme::TkcHancock => (Limiter::VanLeer, 0.4, SurfaceTreatment::default()),
+        };
+        Self {
+            scheme,
+            limiter,
+            kernel: KernelFamily::WendlandC2,
+            smoothing: 0.5,
+            courant,
+            surface,
+            skin: 0.2,
+            volume_consistency: Some(VolumeConsistency::default()),
+        }
+    }
+
+    /// Names every setting that is outside its range.
+    pub fn faults(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        let mut check = |holds: bool, what: String| {
+            if !holds {
+                faults.push(what);
+            }
+        };
+        let within = |x: f64, low: f64, high: f64| x.is_finite() && x >= low && x <= high;
+        check(
+            within(self.smoothing, 0.3, 2.0),
+            format!("smoothing = {} is outside 0.3 to 2", self.smoothing),
+        );
+        check(within(self.courant, 1e-6, 1.0), format!("courant = {} is outside 1e-6 to 1", self.courant));
+        check(within(self.skin, 0.0, 2.0), format!("skin = {} particle sizes is outside 0 to 2", self.skin));
+        if let SurfaceTreatment::SpectralCap { cap } = self.surface {
+            check(within(cap, 1.0, 100.0), format!("cap = {cap} of the spectral cap is outside 1 to 100"));
+        }
+        if let Some(v) = self.volume_consistency {
+            check(
+                within(v.width, 1.0, 4.0),
+                format!("width = {} of the volume sum is outside 1 to 4", v.width),
+            );
+            check(within(v.rate, 0.0, 1.0), format!("rate = {} of the relaxation is outside 0 to 1", v.rate));
+            check(within(v.tolerance, 0.0, 0.1), format!("tolerance = {} is outside 0 to 0.1", v.tolerance));
+            check(
+                within(v.void_deficit, 1e-3, 1.0),
+                format!("void_deficit = {} is outside 0.001 to 1", v.void_deficit),
+            );
+        }
+        faults
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::for_scheme(Scheme::default())
+    }
+}

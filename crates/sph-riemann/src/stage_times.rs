@@ -1,0 +1,87 @@
+//! Where the time of a run goes.
+
+use std::time::Instant;
+
+/// Stages of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepStage {
+    /// Sorting particles and building neighbour lists.
+    Lists,
+    /// Volume sums.
+    Volume,
+    /// Equations of state, records, halo, time step.
+    Prepare,
+    /// First pass: gradients and half step; printed surface rules.
+    Gradient,
+    /// Second pass: contacts.
+    Contact,
+    /// Time-centring at free surfaces.
+    Centering,
+    /// Update of the state.
+    Update,
+}
+
+impl StepStage {
+    /// Every stage, in the order of a step.
+    pub const ALL: [Self; 7] = [
+        Self::Lists,
+        Self::Volume,
+        Self::Prepare,
+        Self::Gradient,
+        Self::Contact,
+        Self::Centering,
+        Self::Update,
+    ];
+
+    /// Name for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lists => "neighbor lists",
+            Self::Volume => "volume sums",
+            Self::Prepare => "equations of state",
+            Self::Gradient => "gradients",
+            Self::Contact => "contacts",
+            Self::Centering => "time-centering",
+            Self::Update => "update",
+        }
+    }
+}
+
+/// Seconds spent in each stage, and rebuilds of the lists.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageTimes {
+    seconds: [f64; 7],
+    /// Number of rebuilds of the neighbour lists.
+    pub rebuilds: u64,
+}
+
+impl StageTimes {
+    /// Adds the time since `from` to a stage and starts the next.
+    pub(crate) fn add(&mut self, stage: StepStage, from: &mut Instant) {
+        let now = Instant::now();
+        self.seconds[stage as usize] += (now - *from).as_secs_f64();
+        *from = now;
+    }
+
+    /// Time spent in a stage [s].
+    pub fn seconds(&self, stage: StepStage) -> f64 {
+        self.seconds[stage as usize]
+    }
+
+    /// Time spent in all stages [s].
+    pub fn total(&self) -> f64 {
+        self.seconds.iter().sum()
+    }
+
+    /// Stages with their times [s] and their shares of the total.
+    pub fn table(&self) -> Vec<(&'static str, f64, f64)> {
+        let total = self.total().max(f64::MIN_POSITIVE);
+        StepStage::ALL.iter().map(|&s| (s.name(), self.seconds(s), self.seconds(s) / total)).collect()
+    }
+
+    /// Adds the times of another simulation.
+    pub fn merge(&mut self, other: &Self) {
+        (0..self.seconds.len()).for_each(|s| self.seconds[s] += other.seconds[s]);
+        self.rebuilds += other.rebuilds;
+    }
+}

@@ -77,7 +77,7 @@ impl Check {
             "scheme",
             format!(
                 "{:?}, {:?}, θ = {}, CFL {}",
-                scheme.scheme, scheme.limiter, scheme.smoothing, scheme.cfl
+                scheme.scheme, scheme.limiter, scheme.smoothing, scheme.courant
             ),
         );
         line("surfaces, volume", format!("{:?}, volume consistency {volume}", scheme.surface));

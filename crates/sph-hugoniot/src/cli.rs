@@ -1,12 +1,16 @@
 //! The command line of `hugoniot`: what can be typed, and which exit code follows.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Parser, Subcommand};
 
-use crate::config;
-use crate::{check, template};
+use crate::config::resolve::PARTICLE_VELOCITIES;
+use crate::config::units::Velocity;
+use crate::run::{self, RunEnd, RunOptions};
+use crate::{check, config, template};
 
 /// Everything went well.
 pub const SUCCESS: u8 = 0;
@@ -58,6 +62,39 @@ pub enum Command {
         #[arg(long, value_name = "N")]
         threads: Option<usize>,
     },
+    /// Run the points of a case; results go into its folder
+    #[command(
+        after_help = "Examples:\n  hugoniot run case.ron\n  hugoniot run case.ron --up 100,150 --out results/two"
+    )]
+    Run {
+        /// Case file
+        case: PathBuf,
+        /// Particle velocities in m/s, in place of those of the case
+        #[arg(long, value_name = "U_P", value_delimiter = ',', value_parser = particle_velocity)]
+        up: Vec<f64>,
+        /// Folder of the results, in place of that of the case
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Cores to use; default: all
+        #[arg(long, value_name = "N")]
+        threads: Option<usize>,
+        /// No progress, no summary; failures are still told
+        #[arg(long)]
+        quiet: bool,
+    },
+}
+
+/// Reads a particle velocity: `100`, `100 m/s`, `0.1 km/s`.
+fn particle_velocity(text: &str) -> Result<f64, String> {
+    let value = match text.trim().parse::<f64>() {
+        Ok(value) => value,
+        Err(_) => Velocity::parse(text)?.si,
+    };
+    let (low, high) = PARTICLE_VELOCITIES;
+    match (low..=high).contains(&value) {
+        true => Ok(value),
+        false => Err(format!("{value} m/s is out of range; hint: from {low} to {high} m/s")),
+    }
 }
 
 /// Runs the command; returns the exit code.
@@ -65,6 +102,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
     match arguments.command {
         Command::Init { template } => Ok(init(template.as_deref())),
         Command::Check { case, json, threads } => check_case(&case, json, threads),
+        Command::Run { case, up, out, threads, quiet } => run_case(&case, up, out, threads, quiet),
     }
 }
 
@@ -90,12 +128,12 @@ fn init(name: Option<&str>) -> u8 {
 }
 
 /// Reads a case file; its faults go to standard error.
-fn load(path: &std::path::Path) -> Option<config::Case> {
+fn load(path: &Path) -> Option<config::Case> {
     let color = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     config::load(path).map_err(|error| eprintln!("{}", error.render(color).trim_end())).ok()
 }
 
-fn check_case(path: &std::path::Path, json: bool, threads: Option<usize>) -> anyhow::Result<u8> {
+fn check_case(path: &Path, json: bool, threads: Option<usize>) -> anyhow::Result<u8> {
     let Some(case) = load(path) else { return Ok(BAD_INPUT) };
     let check = check::Check::new(case, threads.unwrap_or_else(available_threads).max(1));
     if json {
@@ -104,6 +142,44 @@ fn check_case(path: &std::path::Path, json: bool, threads: Option<usize>) -> any
         print!("{}", check.to_text());
     }
     Ok(SUCCESS)
+}
+
+fn run_case(
+    path: &Path,
+    mut points: Vec<f64>,
+    out: Option<PathBuf>,
+    threads: Option<usize>,
+    quiet: bool,
+) -> anyhow::Result<u8> {
+    let Some(mut case) = load(path) else { return Ok(BAD_INPUT) };
+    if !points.is_empty() {
+        points.sort_by(f64::total_cmp);
+        points.dedup();
+        case.points = points;
+    }
+    let text = std::fs::read_to_string(path)?;
+    let folder = out.unwrap_or_else(|| PathBuf::from(&case.output.directory));
+    let threads = threads.unwrap_or_else(available_threads).clamp(1, 1024);
+    let interrupt = stop_on_interrupt()?;
+    let end = run::run(&case, &text, &RunOptions { folder, threads, quiet }, &interrupt)?;
+    Ok(match end {
+        RunEnd::Done => SUCCESS,
+        RunEnd::SomeFailed => NUMERICAL_FAILURE,
+        RunEnd::Interrupted => INTERRUPTED,
+    })
+}
+
+/// The first Ctrl-C asks the points to stop; the second ends the process at once.
+fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&flag);
+    ctrlc::set_handler(move || {
+        if seen.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        eprintln!("interrupted: writing what was computed; again to stop at once");
+    })?;
+    Ok(flag)
 }
 
 /// Cores of this machine.

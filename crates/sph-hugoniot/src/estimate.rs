@@ -62,7 +62,7 @@ pub fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> PointEstim
     let packed = 0.5 * (1.0 + sample.porosity);
     let particles = (window_cells as f64 * sample.particles.len() as f64 * packed).round();
     let sound_speed = case.material.longitudinal_sound_speed(sample.density, 0.0);
-    let step = case.scheme.cfl * case.medium.particle_size / (sound_speed + particle_velocity);
+    let step = case.scheme.courant * case.medium.particle_size / (sound_speed + particle_velocity);
     let steps = (fed_cells as f64 * sample.cell / u_s / step).ceil();
     PointEstimate {
         particle_velocity,

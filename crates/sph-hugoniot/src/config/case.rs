@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 use sph_materials::Material;
-
-pub use super::schema::{InletName, KernelName, LimiterName, SchemeName};
+use sph_riemann::Settings;
+use sph_window::InletKind;
 
 /// A case that can be run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -15,7 +15,7 @@ pub struct Case {
     /// Cell, pores and particles.
     pub medium: Medium,
     /// How the equations are solved.
-    pub scheme: SchemeCase,
+    pub scheme: Settings,
     /// The moving window.
     pub window: WindowCase,
     /// Particle velocities u_p [m/s], rising.
@@ -82,51 +82,6 @@ pub enum Packing {
     Hexagonal,
 }
 
-/// How the equations are solved.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SchemeCase {
-    /// Scheme.
-    pub scheme: SchemeName,
-    /// Limiter of the reconstruction.
-    pub limiter: LimiterName,
-    /// Kernel.
-    pub kernel: KernelName,
-    /// θ in h_ij = θ(D_i + D_j) [-].
-    pub smoothing: f64,
-    /// C in the time step C min D/(c_l + |U_rel|) [-].
-    pub cfl: f64,
-    /// What replaces L⁻¹ at free surfaces.
-    pub surface: Surface,
-    /// Relaxation of the density towards the particles' packing.
-    pub volume_consistency: Option<Relaxation>,
-}
-
-/// What replaces L⁻¹ at free surfaces.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub enum Surface {
-    /// L⁻¹ everywhere.
-    None,
-    /// L = I where the least eigenvalue of L⁻¹ is below 0.75, or det L below the floor [-].
-    Printed(f64),
-    /// L = I where the least eigenvalue of L is below 0.75, or det L below the floor [-].
-    Intended(f64),
-    /// Eigenvalues of the inverse at most this [-].
-    SpectralCap(f64),
-}
-
-/// Parameters of the density's relaxation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Relaxation {
-    /// h_S / D of the wide kernel [-].
-    pub width: f64,
-    /// κ [-].
-    pub rate: f64,
-    /// Tolerance of ΔS [-].
-    pub tolerance: f64,
-    /// δ [-].
-    pub delta: f64,
-}
-
 /// The moving window.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WindowCase {
@@ -135,7 +90,9 @@ pub struct WindowCase {
     /// Width of the inlet and of each outlet region [D].
     pub region_width: f64,
     /// What is imposed at the inlet.
-    pub inlet: InletName,
+    pub inlet: InletKind,
+    /// Wanted place of the front as a part of the length [-].
+    pub front_place: f64,
 }
 
 impl WindowCase {
@@ -151,7 +108,7 @@ impl WindowCase {
 /// When a point has settled.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stop {
-    /// Cells fed before the first block; `None`: the window's length, see [`Stop::startup_at`].
+    /// Cells fed before the first block; `None`: until the window sees that the start-up material has left.
     pub startup_cells: Option<usize>,
     /// Cells fed in a block.
     pub block_cells: usize,
@@ -164,9 +121,10 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Cells fed before the first block in a window of `window_cells` cells.
+    /// About how many cells are fed before the first block in a window of `window_cells` cells.
     ///
-    /// By then the material that the start-up compacted has left through the outlet.
+    /// While the front runs to its place it leaves half a window of compacted start-up material behind; that takes
+    /// about as long to leave as the front took.
     pub fn startup_at(&self, window_cells: usize) -> usize {
         self.startup_cells.unwrap_or(window_cells)
     }

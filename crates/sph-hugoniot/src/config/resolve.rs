@@ -1,5 +1,8 @@
 //! Schema → case: required fields, defaults, ranges, and what fields must hold together. All faults are noted.
 
+use sph_riemann::{Scheme, Settings, SurfaceTreatment, VolumeConsistency};
+use sph_window::InletKind;
+
 use super::case::*;
 use super::fault::{Fault, Faults, Span};
 use super::schema::*;
@@ -8,6 +11,9 @@ use super::units::{Count, Kind, LengthKind, Number, Quantity, show, significant}
 
 /// Most particles that a window may hold: about 100 GB, beyond any machine that this program is made for.
 pub const MAX_PARTICLES: f64 = 1e8;
+
+/// Least and greatest u_p that is accepted [m/s].
+pub const PARTICLE_VELOCITIES: (f64, f64) = (1.0, 3000.0);
 
 /// Turns what was written into a case; `None` when a fault was noted, here or before.
 pub fn resolve(schema: &CaseSchema, whole: &Span, faults: &Faults) -> Option<Case> {
@@ -254,7 +260,9 @@ impl Resolver<'_> {
         }
         let mut points: Vec<f64> = Vec::new();
         for field in list {
-            let Some(velocity) = self.quantity(field, 1.0, 3000.0) else { continue };
+            let Some(velocity) = self.quantity(field, PARTICLE_VELOCITIES.0, PARTICLE_VELOCITIES.1) else {
+                continue;
+            };
             match points.contains(&velocity) {
                 true => self.refuse(
                     span_of(field),
@@ -268,52 +276,67 @@ impl Resolver<'_> {
         (!points.is_empty()).then_some(points)
     }
 
-    fn scheme(&self, s: &SchemeSchema) -> Option<SchemeCase> {
-        let scheme = self.choice(&s.scheme, SchemeName::TkcHancock);
-        let limiter = self.choice(&s.limiter, default_limiter(scheme?));
-        let kernel = self.choice(&s.kernel, KernelName::WendlandC2);
-        let smoothing = self.number(&s.smoothing, 0.5, 0.45, 1.0);
-        let cfl = self.number(&s.cfl, default_cfl(scheme?), 0.001, 1.0);
-        let surface = self.surface(&s.surface);
-        let volume_consistency = self.relaxation(&s.volume_consistency);
-        Some(SchemeCase {
-            scheme: scheme?,
+    fn scheme(&self, s: &SchemeSchema) -> Option<Settings> {
+        let usual = Settings::for_scheme(self.choice(&s.scheme, Scheme::default())?);
+        let limiter = self.choice(&s.limiter, usual.limiter);
+        let kernel = self.choice(&s.kernel, usual.kernel);
+        let smoothing = self.number(&s.smoothing, usual.smoothing, 0.45, 1.0);
+        let courant = self.number(&s.cfl, usual.courant, 0.001, 1.0);
+        let skin = self.number(&s.skin, usual.skin, 0.0, 2.0);
+        let surface = self.surface(&s.surface, usual.surface);
+        let volume_consistency = self.volume_consistency(&s.volume_consistency, usual.volume_consistency);
+        Some(Settings {
             limiter: limiter?,
             kernel: kernel?,
             smoothing: smoothing?,
-            cfl: cfl?,
+            courant: courant?,
+            skin: skin?,
             surface: surface?,
             volume_consistency: volume_consistency?,
+            ..usual
         })
     }
 
-    fn surface(&self, field: &Field<SurfaceSchema>) -> Option<Surface> {
-        let floor = |f: &FloorSchema| self.number(&f.determinant_floor, 0.05, 0.0, 0.5);
+    fn surface(&self, field: &Field<SurfaceSchema>, usual: SurfaceTreatment) -> Option<SurfaceTreatment> {
+        let floor = |f: &FloorSchema| self.number(&f.determinant_floor, 0.01, 0.0, 0.5);
         match field {
-            Field::Absent => Some(Surface::SpectralCap(2.5)),
+            Field::Absent => Some(usual),
             Field::Bad(_) => None,
-            Field::Good(SurfaceSchema::None, _) => Some(Surface::None),
-            Field::Good(SurfaceSchema::Printed(f), _) => floor(f).map(Surface::Printed),
-            Field::Good(SurfaceSchema::Intended(f), _) => floor(f).map(Surface::Intended),
+            Field::Good(SurfaceSchema::None, _) => Some(SurfaceTreatment::None),
+            Field::Good(SurfaceSchema::Printed(f), _) => {
+                floor(f).map(|determinant_floor| SurfaceTreatment::Printed { determinant_floor })
+            }
+            Field::Good(SurfaceSchema::Intended(f), _) => {
+                floor(f).map(|determinant_floor| SurfaceTreatment::Intended { determinant_floor })
+            }
             Field::Good(SurfaceSchema::SpectralCap(c), _) => {
-                self.number(&c.cap, 2.5, 1.0, 100.0).map(Surface::SpectralCap)
+                self.number(&c.cap, 2.5, 1.0, 100.0).map(|cap| SurfaceTreatment::SpectralCap { cap })
             }
         }
     }
 
-    fn relaxation(&self, field: &Field<VolumeConsistencySchema>) -> Option<Option<Relaxation>> {
-        let on = RelaxationSchema::default();
+    fn volume_consistency(
+        &self,
+        field: &Field<VolumeConsistencySchema>,
+        usual: Option<VolumeConsistency>,
+    ) -> Option<Option<VolumeConsistency>> {
         let r = match field {
-            Field::Absent => &on,
+            Field::Absent => return Some(usual),
             Field::Bad(_) => return None,
             Field::Good(VolumeConsistencySchema::Off, _) => return Some(None),
             Field::Good(VolumeConsistencySchema::On(r), _) => r,
         };
-        let width = self.number(&r.width, 2.0, 1.5, 4.0);
-        let rate = self.number(&r.rate, 0.05, 0.0, 1.0);
-        let tolerance = self.number(&r.tolerance, 0.001, 0.0, 0.1);
-        let delta = self.number(&r.delta, 0.1, 1e-3, 1.0);
-        Some(Some(Relaxation { width: width?, rate: rate?, tolerance: tolerance?, delta: delta? }))
+        let usual = VolumeConsistency::default();
+        let width = self.number(&r.width, usual.width, 1.5, 4.0);
+        let rate = self.number(&r.rate, usual.rate, 0.0, 1.0);
+        let tolerance = self.number(&r.tolerance, usual.tolerance, 0.0, 0.1);
+        let void_deficit = self.number(&r.void_deficit, usual.void_deficit, 1e-3, 1.0);
+        Some(Some(VolumeConsistency {
+            width: width?,
+            rate: rate?,
+            tolerance: tolerance?,
+            void_deficit: void_deficit?,
+        }))
     }
 
     fn window(&self, w: &WindowSchema) -> Option<WindowCase> {
@@ -323,8 +346,22 @@ impl Resolver<'_> {
             Field::Good(LengthSchema::Cells(n), _) => self.count(n, 12, 1, 100_000).map(Some),
         };
         let region_width = self.number(&w.region_width, 4.0, 2.0, 40.0);
-        let inlet = self.choice(&w.inlet, InletName::FixedVelocity);
-        Some(WindowCase { cells: cells?, region_width: region_width?, inlet: inlet? })
+        let inlet = match &w.inlet {
+            Field::Bad(_) => None,
+            Field::Absent | Field::Good(InletSchema::FixedVelocity, _) => Some(InletKind::FixedVelocity),
+            Field::Good(InletSchema::ImpedanceMatched(wave), _) => {
+                let wave_speed = self.quantity(&wave.wave_speed, 1.0, 1e5);
+                let good = !matches!(wave.wave_speed, Field::Bad(_));
+                good.then_some(InletKind::ImpedanceMatched { wave_speed })
+            }
+        };
+        let front_place = self.number(&w.front_place, 0.5, 0.2, 0.8);
+        Some(WindowCase {
+            cells: cells?,
+            region_width: region_width?,
+            inlet: inlet?,
+            front_place: front_place?,
+        })
     }
 
     fn stop(&self, s: &StopSchema) -> Option<Stop> {
@@ -408,20 +445,4 @@ impl Resolver<'_> {
 /// Porosity of a cell with circular pores.
 fn geometric_porosity(pores: Pores, radius: f64, cell: f64) -> f64 {
     1.0 / (1.0 - pores.count() as f64 * std::f64::consts::PI * radius * radius / (cell * cell))
-}
-
-/// Each scheme's usual limiter.
-fn default_limiter(scheme: SchemeName) -> LimiterName {
-    match scheme {
-        SchemeName::TkcMuscl => LimiterName::MinmodPrinted,
-        SchemeName::Csph | SchemeName::TkcHancock => LimiterName::VanLeer,
-    }
-}
-
-/// Each scheme's usual Courant number: what it stays stable with in pore collapse.
-fn default_cfl(scheme: SchemeName) -> f64 {
-    match scheme {
-        SchemeName::TkcMuscl => 0.1,
-        SchemeName::Csph | SchemeName::TkcHancock => 0.4,
-    }
 }

@@ -3,7 +3,9 @@
 //! [`super::resolve`] says which fields are required, what the defaults are, and which ranges hold.
 
 use serde::Deserialize;
+use sph_core::kernel::KernelFamily;
 use sph_materials::SoundSpeedModel;
+use sph_riemann::{Limiter, Scheme};
 
 use super::tree::Field;
 use super::units::{Count, Density, Length, Number, Pressure, Velocity};
@@ -128,56 +130,21 @@ pub enum PackingSchema {
 #[serde(default, deny_unknown_fields)]
 pub struct SchemeSchema {
     /// Scheme.
-    pub scheme: Field<SchemeName>,
+    pub scheme: Field<Scheme>,
     /// Limiter of the reconstruction.
-    pub limiter: Field<LimiterName>,
+    pub limiter: Field<Limiter>,
     /// Kernel.
-    pub kernel: Field<KernelName>,
+    pub kernel: Field<KernelFamily>,
     /// θ in h_ij = θ(D_i + D_j).
     pub smoothing: Field<Number>,
     /// C in the time step C min D/(c_l + |U_rel|).
     pub cfl: Field<Number>,
     /// What replaces L⁻¹ at free surfaces.
     pub surface: Field<SurfaceSchema>,
+    /// Skin of the neighbor lists in D.
+    pub skin: Field<Number>,
     /// Relaxation of the density towards the particles' packing.
     pub volume_consistency: Field<VolumeConsistencySchema>,
-}
-
-/// Scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
-pub enum SchemeName {
-    /// No reconstruction, no kernel correction.
-    Csph,
-    /// Total kernel correction and reconstruction, explicit Euler.
-    TkcMuscl,
-    /// Total kernel correction, reconstruction, half-step in time.
-    TkcHancock,
-}
-
-/// Limiter of the reconstruction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
-pub enum LimiterName {
-    /// minmod(forward, central).
-    MinmodPrinted,
-    /// minmod(forward, upwind).
-    MinmodTvd,
-    /// van Leer's harmonic limiter.
-    VanLeer,
-    /// Monotonized central.
-    MonotonizedCentral,
-}
-
-/// Kernel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
-pub enum KernelName {
-    /// Wendland C2.
-    WendlandC2,
-    /// Wendland C4.
-    WendlandC4,
-    /// Cubic spline.
-    CubicSpline,
-    /// Quintic spline.
-    Quintic,
 }
 
 /// What replaces L⁻¹ at free surfaces.
@@ -228,8 +195,8 @@ pub struct RelaxationSchema {
     pub rate: Field<Number>,
     /// Tolerance of ΔS.
     pub tolerance: Field<Number>,
-    /// δ.
-    pub delta: Field<Number>,
+    /// δ: deficit beyond which a particle lines a void.
+    pub void_deficit: Field<Number>,
 }
 
 /// The moving window.
@@ -241,7 +208,26 @@ pub struct WindowSchema {
     /// Width of the inlet and of each outlet region in D.
     pub region_width: Field<Number>,
     /// What is imposed at the inlet.
-    pub inlet: Field<InletName>,
+    pub inlet: Field<InletSchema>,
+    /// Wanted place of the front as a part of the length.
+    pub front_place: Field<Number>,
+}
+
+/// What is imposed at the inlet.
+#[derive(Debug, Deserialize)]
+pub enum InletSchema {
+    /// The velocity.
+    FixedVelocity,
+    /// The impedance: waves leave.
+    ImpedanceMatched(WaveSpeedSchema),
+}
+
+/// Speed of the wave that an impedance-matched inlet lets out.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WaveSpeedSchema {
+    /// Speed of the precursor.
+    pub wave_speed: Field<Velocity>,
 }
 
 /// Length of the window.
@@ -251,15 +237,6 @@ pub enum LengthSchema {
     Auto,
     /// Number of cells.
     Cells(Field<Count>),
-}
-
-/// What is imposed at the inlet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, serde::Serialize)]
-pub enum InletName {
-    /// The velocity.
-    FixedVelocity,
-    /// The impedance: waves leave.
-    ImpedanceMatched,
 }
 
 /// When a point has settled.

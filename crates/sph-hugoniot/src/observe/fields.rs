@@ -1,0 +1,44 @@
+//! The particles at one moment, as the field images need them.
+
+use sph_core::Dim2;
+use sph_window::Window;
+
+/// Places and fields of all particles at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fields {
+    /// Time [s].
+    pub time: f64,
+    /// Length of the box and height of the cell [m].
+    pub extent: (f64, f64),
+    /// x [m].
+    pub x: Vec<f64>,
+    /// y within the cell [m].
+    pub y: Vec<f64>,
+    /// Edge of the square that a particle fills, √(m/ρ) [m].
+    pub size: Vec<f64>,
+    /// The particles' own density [kg/m³].
+    pub density: Vec<f64>,
+    /// σ_xx [Pa].
+    pub stress: Vec<f64>,
+    /// u_x relative to the undisturbed medium [m/s].
+    pub velocity: Vec<f64>,
+}
+
+impl Fields {
+    /// The window's present state.
+    pub fn of(window: &Window<Dim2>) -> Self {
+        let (simulation, cell) = (window.simulation(), window.sample().cell());
+        let particles = simulation.particles();
+        let (height, lower) = (cell.period(1), cell.lower.y);
+        Self {
+            time: window.time(),
+            extent: (window.regions().length, height),
+            x: particles.position[0].clone(),
+            y: particles.position[1].iter().map(|y| (y - lower).rem_euclid(height)).collect(),
+            size: particles.mass.iter().zip(&particles.density).map(|(m, rho)| (m / rho).sqrt()).collect(),
+            density: particles.density.clone(),
+            stress: (0..particles.len()).map(|i| simulation.stress(i)[0]).collect(),
+            velocity: particles.velocity[0].iter().map(|u| u + window.inlet_velocity()).collect(),
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! What a point is looked at for: averaged profiles in the frame of the front, the states ahead of it and behind it,
+//! and the particles at the end.
+
+mod fields;
+mod profile;
+mod states;
+
+pub use fields::Fields;
+pub use profile::{Bin, FrontProfile, ProfileGrid};
+pub use states::{MeanState, States};

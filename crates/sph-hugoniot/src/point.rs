@@ -1,0 +1,225 @@
+//! One point of the Hugoniot: one u_p, run to a steady front.
+//!
+//! 1. **Start-up.** The window is filled with the medium, the outlet is the piston, the front runs to its place, and what
+//!    was compacted on the way leaves through the outlet.
+//! 2. **Blocks.** From then on the front's way through the medium is cut into blocks of whole cells. A point has settled
+//!    when the u_s of the last `blocks` blocks spread by less than `tolerance`; these blocks give u_s, its standard error
+//!    (batch means over single cells, [`crate::statistics`]) and the averaged profile. Earlier blocks are dropped.
+//! 3. **End.** Settled, or `max_fed_cells` are fed: then the last blocks are reported with the status `not settled`.
+//!
+//! A step that fails ends the point with the status `failed` and the reason; what was measured until then is kept.
+
+use std::time::Instant;
+
+use sph_core::Dim2;
+use sph_window::{Observation, Window, WindowError};
+
+use crate::config::Case;
+use crate::microstructure::Sample;
+use crate::observe::{Fields, FrontProfile, ProfileGrid, States};
+use crate::outcome::{PointOutcome, Status};
+use crate::setup;
+use crate::statistics::{mean, relative_spread};
+
+/// What watches and steers a running point.
+pub trait Control: Sync {
+    /// True when the point should stop where it is.
+    fn interrupted(&self) -> bool;
+    /// Told now and then: cells swept so far, and how many it will be at least.
+    fn progress(&self, swept_cells: f64, expected_cells: f64);
+}
+
+/// Runs without being watched.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unwatched;
+
+impl Control for Unwatched {
+    fn interrupted(&self) -> bool {
+        false
+    }
+    fn progress(&self, _swept_cells: f64, _expected_cells: f64) {}
+}
+
+/// Runs one point; a failure is part of the outcome.
+pub fn run(case: &Case, sample: &Sample, particle_velocity: f64, control: &dyn Control) -> PointOutcome {
+    let started = Instant::now();
+    let mut outcome = match Point::new(case, sample, particle_velocity) {
+        Ok(mut point) => {
+            let status = point.drive(control);
+            point.outcome(status)
+        }
+        Err(error) => PointOutcome::failed(particle_velocity, error.to_string()),
+    };
+    outcome.wall_seconds = started.elapsed().as_secs_f64();
+    outcome
+}
+
+/// A point under way.
+struct Point<'c> {
+    case: &'c Case,
+    sample: &'c Sample,
+    particle_velocity: f64,
+    window: Window<Dim2>,
+    last_look: Option<f64>,
+    /// Swept length from which blocks are counted, once known [m].
+    blocks_from: Option<f64>,
+    /// One profile for each block; the last one is under way.
+    profiles: Vec<FrontProfile>,
+}
+
+impl<'c> Point<'c> {
+    fn new(case: &'c Case, sample: &'c Sample, particle_velocity: f64) -> Result<Self, WindowError> {
+        let feed = setup::feed_sample(sample)?;
+        let settings = setup::window_settings(case, particle_velocity);
+        let window = Window::new(feed, vec![case.material.clone()], case.scheme, settings)?;
+        Ok(Self {
+            case,
+            sample,
+            particle_velocity,
+            window,
+            last_look: None,
+            blocks_from: None,
+            profiles: Vec::new(),
+        })
+    }
+
+    fn drive(&mut self, control: &dyn Control) -> Status {
+        loop {
+            if control.interrupted() {
+                return Status::Interrupted;
+            }
+            let observation = match self.window.step() {
+                Ok(report) => report.observation,
+                Err(error) => return Status::Failed(error.to_string()),
+            };
+            let Some(observation) = observation else { continue };
+            let status = self.look(&observation);
+            control.progress(observation.swept / self.sample.cell, self.expected_cells());
+            if let Some(status) = status {
+                return status;
+            }
+        }
+    }
+
+    /// Takes a look at the front in; the status if the point has come to its end.
+    fn look(&mut self, now: &Observation) -> Option<Status> {
+        let weight = now.time - self.last_look.replace(now.time).unwrap_or(now.time);
+        if self.blocks_from.is_none() && self.startup_is_over() {
+            self.blocks_from = Some(now.swept);
+            self.profiles.push(self.new_profile());
+        }
+        if let Some(profile) = self.profiles.last_mut() {
+            profile.observe(&self.window, now.front, weight);
+        }
+        if self.blocks_from.is_some() && self.full_blocks() >= self.profiles.len() {
+            if self.has_settled() {
+                return Some(Status::Settled);
+            }
+            self.profiles.push(self.new_profile());
+        }
+        (self.window.fed_cells() >= self.case.stop.max_fed_cells as f64).then_some(Status::NotSettled)
+    }
+
+    fn new_profile(&self) -> FrontProfile {
+        let bin = self.sample.cell / self.case.output.bins_per_cell as f64;
+        let grid = ProfileGrid::new(bin, self.window.regions().length);
+        FrontProfile::new(grid, self.window.sample().cross_section())
+    }
+
+    fn startup_is_over(&self) -> bool {
+        match self.case.stop.startup_cells {
+            None => self.window.is_settled(),
+            Some(cells) => self.window.fed_cells() >= cells as f64,
+        }
+    }
+
+    /// u_s over each cell that the front swept since start-up [m/s].
+    fn cell_velocities(&self) -> Vec<f64> {
+        let from = self.blocks_from.unwrap_or(f64::INFINITY);
+        self.window.blocks().iter().filter(|b| b.swept >= from).map(|b| b.velocity()).collect()
+    }
+
+    fn full_blocks(&self) -> usize {
+        self.cell_velocities().len() / self.case.stop.block_cells
+    }
+
+    /// Cells of the last blocks that must agree; all there are while they are fewer.
+    fn counted_cells(&self) -> Vec<f64> {
+        let (stop, cells) = (&self.case.stop, self.cell_velocities());
+        let full = cells.len() / stop.block_cells * stop.block_cells;
+        if full == 0 {
+            return cells;
+        }
+        cells[full.saturating_sub(stop.blocks * stop.block_cells)..full].to_vec()
+    }
+
+    fn has_settled(&self) -> bool {
+        let (stop, cells) = (&self.case.stop, self.counted_cells());
+        let blocks: Vec<f64> = cells.chunks(stop.block_cells).map(harmonic_mean).collect();
+        blocks.len() >= stop.blocks && relative_spread(&blocks) <= stop.tolerance
+    }
+
+    /// Cells that the front will have swept at the earliest end.
+    fn expected_cells(&self) -> f64 {
+        let stop = &self.case.stop;
+        let cells = self.case.window.cells_at(self.particle_velocity);
+        let blocks = self.profiles.len().max(stop.blocks) * stop.block_cells;
+        let start = self.blocks_from.map(|from| from / self.sample.cell);
+        start.unwrap_or(stop.startup_at(cells) as f64 + 0.5 * cells as f64) + blocks as f64
+    }
+
+    /// The mean profile of the blocks that count.
+    fn profile(&self) -> Option<FrontProfile> {
+        let full = self.full_blocks().min(self.profiles.len());
+        let counted = match full {
+            0 => &self.profiles[..],
+            n => &self.profiles[n.saturating_sub(self.case.stop.blocks)..n],
+        };
+        let (first, rest) = counted.split_first()?;
+        let mut sum = first.clone();
+        rest.iter().for_each(|p| sum.merge(p));
+        (sum.looks() > 0).then_some(sum)
+    }
+
+    fn outcome(&self, status: Status) -> PointOutcome {
+        let window = &self.window;
+        let cells = self.counted_cells();
+        let profile = self.profile();
+        let margins = window.settings().plateau;
+        let (cell, size) = (self.sample.cell, self.case.medium.particle_size);
+        let states = profile.as_ref().and_then(|p| States::read(p, &margins, cell, size));
+        let shock_velocity = if cells.is_empty() { f64::NAN } else { harmonic_mean(&cells) };
+        let simulation = window.simulation();
+        PointOutcome {
+            particle_velocity: self.particle_velocity,
+            effective_particle_velocity: window.effective_particle_velocity(),
+            shock_velocity,
+            standard_error: crate::statistics::standard_error(&cells),
+            averaged_cells: cells.len(),
+            mass_balance_velocity: states
+                .map_or(f64::NAN, |s| s.mass_balance_velocity(self.sample.bulk_density())),
+            residuals: states.map(|s| s.jump(shock_velocity).residuals()),
+            states,
+            fed_cells: window.fed_cells(),
+            steps: window.steps(),
+            particle_steps: simulation.particle_steps(),
+            particles: simulation.particles().len(),
+            ledger_residual: window.ledger_residual(),
+            cell_velocities: window
+                .blocks()
+                .iter()
+                .map(|b| (b.end, b.swept + b.length, b.velocity()))
+                .collect(),
+            profile: profile.map(|p| p.bins()).unwrap_or_default(),
+            fields: Fields::of(window),
+            stages: simulation.stage_times().clone(),
+            status,
+            wall_seconds: 0.0,
+        }
+    }
+}
+
+/// Mean velocity over cells of equal length: their length over their time.
+fn harmonic_mean(velocities: &[f64]) -> f64 {
+    1.0 / mean(&velocities.iter().map(|v| 1.0 / v).collect::<Vec<_>>())
+}

@@ -1,0 +1,92 @@
+//! What a run leaves in its folder.
+//!
+//! ```text
+//! case.ron            the case file, as it was read
+//! case.json           the resolved case in SI
+//! hugoniot.csv, .json the table of all finished points
+//! points/up_0100/     profile.csv and history.csv of one point
+//! plots/              hugoniot, profiles, histories, fields
+//! ```
+//!
+//! The table is written anew after each finished point, atomically: whatever ends a run, what was computed is there.
+
+pub mod plots;
+pub mod summary;
+pub mod table;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+use crate::config::Case;
+use crate::microstructure::Sample;
+use crate::outcome::PointOutcome;
+
+/// The folder of a run.
+#[derive(Clone, Debug)]
+pub struct Report {
+    folder: PathBuf,
+}
+
+impl Report {
+    /// Makes the folder and puts the case into it.
+    pub fn create(folder: &Path, case: &Case, case_text: &str) -> Result<Self> {
+        for part in ["", "plots", "points"] {
+            let path = folder.join(part);
+            std::fs::create_dir_all(&path)
+                .with_context(|| format!("{}: the folder cannot be made", path.display()))?;
+        }
+        sph_io::write_atomic(folder.join("case.ron"), case_text.as_bytes())?;
+        sph_io::write_atomic(folder.join("case.json"), serde_json::to_string_pretty(case)?.as_bytes())?;
+        Ok(Self { folder: folder.to_path_buf() })
+    }
+
+    /// Where it is.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Writes the table of the points that are finished.
+    pub fn write_table(&self, case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Result<()> {
+        let table = table::hugoniot(case, sample, outcomes);
+        table.write_csv(self.folder.join("hugoniot.csv"))?;
+        Ok(table.write_json(self.folder.join("hugoniot.json"))?)
+    }
+
+    /// Writes the tables and pictures of one point.
+    pub fn write_point(&self, case: &Case, outcome: &PointOutcome) -> Result<()> {
+        let stem = outcome.file_stem();
+        let folder = self.folder.join("points").join(&stem);
+        std::fs::create_dir_all(&folder)?;
+        if !outcome.profile.is_empty() {
+            table::profile(outcome).write_csv(folder.join("profile.csv"))?;
+            self.write_figure(&plots::profile(outcome), &format!("profile_{stem}"))?;
+        }
+        if !outcome.cell_velocities.is_empty() {
+            table::history(outcome).write_csv(folder.join("history.csv"))?;
+            self.write_figure(&plots::history(outcome, case.medium.cell), &format!("history_{stem}"))?;
+        }
+        if case.output.images && !outcome.fields.x.is_empty() {
+            plots::fields(outcome).write_png(self.plot(&format!("fields_{stem}.png")))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the pictures of all points together; nothing without a measured one.
+    pub fn write_curves(&self, case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Result<()> {
+        if !outcomes.iter().any(|o| o.shock_velocity.is_finite()) {
+            return Ok(());
+        }
+        self.write_figure(&plots::shock_velocities(case, sample, outcomes), "hugoniot")?;
+        self.write_figure(&plots::with_solid(case, sample, outcomes), "hugoniot_with_solid")
+    }
+
+    fn write_figure(&self, figure: &sph_io::plot::Figure, name: &str) -> Result<()> {
+        figure.write_svg(self.plot(&format!("{name}.svg")))?;
+        Ok(figure.write_png(self.plot(&format!("{name}.png")))?)
+    }
+
+    fn plot(&self, name: &str) -> PathBuf {
+        self.folder.join("plots").join(name)
+    }
+}

@@ -1,0 +1,105 @@
+//! All points of a case, side by side on the cores.
+//!
+//! As many points run at once as there are cores; each has its own pool of threads, so that a point never waits for
+//! another. With at least as many points as cores every point runs on one thread; with fewer the cores are shared out.
+//! The solver gives the same bits on any number of threads, so the results do not depend on it. Points are started in
+//! the order of falling expected time: the last ones to run are short.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::config::Case;
+use crate::microstructure::Sample;
+use crate::outcome::PointOutcome;
+use crate::point::{self, Control};
+
+/// What watches a sweep.
+pub trait Watch: Sync {
+    /// What watches the point with this index.
+    fn control(&self, index: usize) -> Box<dyn Control + '_>;
+    /// True when no further point should be started.
+    fn interrupted(&self) -> bool;
+    /// Told when a point has ended; one call at a time. An error ends the sweep.
+    fn finished(&self, index: usize, outcome: PointOutcome) -> anyhow::Result<()>;
+}
+
+/// Runs the points; returns the first error of [`Watch::finished`].
+pub fn run(
+    case: &Case,
+    sample: &Sample,
+    costs: &[f64],
+    threads: usize,
+    watch: &dyn Watch,
+) -> anyhow::Result<()> {
+    let order = by_falling_cost(costs);
+    let workers = threads.clamp(1, case.points.len().max(1));
+    let next = AtomicUsize::new(0);
+    let error = Mutex::new(None);
+    std::thread::scope(|scope| {
+        for worker in 0..workers {
+            let share = threads_of(worker, workers, threads);
+            let (order, next, error) = (&order, &next, &error);
+            scope.spawn(move || {
+                if let Err(e) = work(case, sample, order, next, share, watch, error) {
+                    lock(error).get_or_insert(e);
+                }
+            });
+        }
+    });
+    error.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+/// Takes points from the queue until it is empty, the sweep is interrupted, or it has failed.
+fn work(
+    case: &Case,
+    sample: &Sample,
+    order: &[usize],
+    next: &AtomicUsize,
+    threads: usize,
+    watch: &dyn Watch,
+    error: &Mutex<Option<anyhow::Error>>,
+) -> anyhow::Result<()> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    while let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+        if watch.interrupted() || lock(error).is_some() {
+            break;
+        }
+        let control = watch.control(index);
+        let outcome = pool.install(|| point::run(case, sample, case.points[index], control.as_ref()));
+        let guard = lock(error);
+        if guard.is_none() {
+            watch.finished(index, outcome)?;
+        }
+    }
+    Ok(())
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// Indices from the most expensive point to the cheapest.
+fn by_falling_cost(costs: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..costs.len()).collect();
+    order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]).then(a.cmp(&b)));
+    order
+}
+
+/// Threads of one worker when `threads` are shared out.
+fn threads_of(worker: usize, workers: usize, threads: usize) -> usize {
+    (threads / workers + usize::from(worker < threads % workers)).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cores_are_shared_out_without_rest() {
+        for (workers, threads) in [(1, 1), (1, 8), (2, 2), (3, 8), (8, 8)] {
+            let shares: Vec<usize> = (0..workers).map(|w| threads_of(w, workers, threads)).collect();
+            assert_eq!(shares.iter().sum::<usize>(), threads, "{shares:?}");
+        }
+        assert_eq!(by_falling_cost(&[1.0, 3.0, 2.0, 3.0]), [1, 3, 2, 0]);
+    }
+}

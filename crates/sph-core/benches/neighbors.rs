@@ -1,4 +1,4 @@
-//! Finding neighbours: `cargo bench -p sph-core --bench neighbors`.
+//! Finding neighbors: `cargo bench -p sph-core --bench neighbors`.
 //!
 //! Lists of a jittered lattice with the paper's θ = 0.55 (support 1.1 (D_i + D_j)) and a skin of 0.2 D, built for
 //! particles in cell order, and the check whether they still hold; beside it the kd-tree on a smaller cloud.

@@ -5,7 +5,8 @@ use sph_core::correction::{Neighbor, gradient_matrix};
 use sph_core::geometry::{Lattice, lattice_volume_sum};
 use sph_core::{Dim2, Dim3, Dimension, KernelFamily};
 
-fn main() {
+/// Prints the table.
+pub fn main() {
     println!("h = width D. sum: sum of V W over the lattice. slope: L_xx of the gradient matrix.");
     println!(
         "{:<24}{:<13}{:>6}{:>12}{:>10}{:>10}",

@@ -4,7 +4,7 @@
 //! L_i = Σ_j V_j ∇_iW_ij ⊗ (r_j - r_i)                                                        paper eq. (12)
 //! ```
 //!
-//! It is the identity where the sum over neighbours differentiates linear fields exactly; its eigenvalues fall towards
+//! It is the identity where the sum over neighbors differentiates linear fields exactly; its eigenvalues fall towards
 //! zero at free surfaces. A corrected gradient multiplies the raw sum by L_i⁻¹, or by what is put in its place:
 //!
 //! - the rule of the paper: the identity at surface particles, near them and where det L_i is small
@@ -31,7 +31,7 @@ pub const SURFACE_EIGENVALUE: f64 = 0.75;
 /// and rounding would decide.
 pub const SMOOTHING_LENGTH_MARGIN: f64 = 1.0001;
 
-/// What particle i knows of its neighbour j.
+/// What particle i knows of its neighbor j.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbor<D: Dimension> {
     /// r_j - r_i [m].
@@ -43,7 +43,7 @@ pub struct Neighbor<D: Dimension> {
 }
 
 impl<D: Dimension> Neighbor<D> {
-    /// A neighbour at `offset` [m] with volume `volume` [m^d], seen with the smoothing length h_ij [m].
+    /// A neighbor at `offset` [m] with volume `volume` [m^d], seen with the smoothing length h_ij [m].
     pub fn new(kernel: KernelFamily, offset: D::Vector, smoothing_length: f64, volume: f64) -> Self {
         Self { offset, volume, kernel_gradient: kernel.gradient::<D>(offset, smoothing_length) }
     }
@@ -57,7 +57,7 @@ pub fn gradient_matrix<D: Dimension>(neighbors: impl IntoIterator<Item = Neighbo
 }
 
 /// K = Σ min(1/λ, c) n ⊗ n over the eigenpairs of the symmetric part of L: the inverse, with no eigenvalue above
-/// `largest` (c). Directions without neighbours (λ ≤ 0) get c.
+/// `largest` (c). Directions without neighbors (λ ≤ 0) get c.
 pub fn spectral_cap<D: Dimension>(gradient_matrix: SquareMatrix<D>, largest: f64) -> SquareMatrix<D> {
     Eigen::of(gradient_matrix).map(|value| if value * largest > 1.0 { 1.0 / value } else { largest })
 }

@@ -1,4 +1,4 @@
-//! Gradients from sums over neighbours.
+//! Gradients from sums over neighbors.
 //!
 //! With L_i of [`correction`](crate::correction) and K_i the matrix that stands for its inverse,
 //!
@@ -9,7 +9,7 @@
 //!
 //! For a field linear in space the sums are L_i times its gradient, so that K_i = L_i⁻¹ makes them exact on any cloud.
 //! A capped K_i is not exact across a surface, and there it would turn a rigid rotation into strain. So the rotation is
-//! taken out first ([`rotation_exact`]): with the spin W that the neighbours show,
+//! taken out first ([`rotation_exact`]): with the spin W that the neighbors show,
 //!
 //! ```text
 //! ∇U = W + K (R - L W),      W_ab = ε_bca Ω_c,
@@ -27,18 +27,18 @@ use crate::correction::Neighbor;
 use crate::dimension::Dimension;
 use crate::matrix::{Eigen, SquareMatrix};
 
-/// Below this share of tr L an eigenvalue of tr L I - L is taken for zero: the neighbours stand on one line and show no
+/// Below this share of tr L an eigenvalue of tr L I - L is taken for zero: the neighbors stand on one line and show no
 /// rotation about it.
 const NO_ROTATION: f64 = 1e-12;
 
-/// Σ V_j (Φ_j - Φ_i) ∇_iW_ij [unit of Φ/m] from the neighbours and Φ_j - Φ_i.
+/// Σ V_j (Φ_j - Φ_i) ∇_iW_ij [unit of Φ/m] from the neighbors and Φ_j - Φ_i.
 pub fn scalar_sum<D: Dimension>(terms: impl IntoIterator<Item = (Neighbor<D>, f64)>) -> D::Vector {
     terms
         .into_iter()
         .fold(D::vector(|_| 0.0), |sum, (n, difference)| sum + n.kernel_gradient * (n.volume * difference))
 }
 
-/// R_ab = Σ V_j ∂_aW (U_b,j - U_b,i) [unit of U/m] from the neighbours and U_j - U_i.
+/// R_ab = Σ V_j ∂_aW (U_b,j - U_b,i) [unit of U/m] from the neighbors and U_j - U_i.
 pub fn vector_sum<D: Dimension>(
     terms: impl IntoIterator<Item = (Neighbor<D>, D::Vector)>,
 ) -> SquareMatrix<D> {
@@ -47,7 +47,7 @@ pub fn vector_sum<D: Dimension>(
     })
 }
 
-/// The angular velocity Ω (x, y, z) [rad/s] that the neighbours show; along z in the plane.
+/// The angular velocity Ω (x, y, z) [rad/s] that the neighbors show; along z in the plane.
 pub fn angular_velocity<D: Dimension>(
     vector_sum: SquareMatrix<D>,
     gradient_matrix: SquareMatrix<D>,

@@ -63,7 +63,7 @@ fn rotations_have_exact_gradients<D: Dimension>(cloud: &Cloud<D>, cap: f64, seed
     for i in 0..cloud.packing.len() {
         let l = gradient_matrix(cloud.neighbors[i].iter().map(|(_, n)| *n));
         let eigen = Eigen::of(l);
-        // Neighbours on one line do not show a rotation about it.
+        // Neighbors on one line do not show a rotation about it.
         let on_one_line = D::COUNT == 3 && l.trace() - eigen.values[2] < 1e-3 * l.trace();
         if on_one_line || l.trace() == 0.0 {
             continue;

@@ -40,7 +40,7 @@ impl<D: Dimension> Scene<D> {
     }
 }
 
-/// Pairs of the lists by owner, sorted; each image of a neighbour counts.
+/// Pairs of the lists by owner, sorted; each image of a neighbor counts.
 fn listed_pairs<D: Dimension>(lists: &NeighborLists<D>) -> Vec<(u32, u32)> {
     let of = |i: usize| lists.neighbors(i).map(move |j| (i as u32, lists.owner(j as usize) as u32));
     let mut pairs: Vec<(u32, u32)> = (0..lists.n_particles).flat_map(of).collect();

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! where e_R = (r_j - r_i)/r_ij points from i to j and W' = dW/dq < 0. The gradient is taken with respect to r_i, as in
-//! the paper, and points towards the neighbour.
+//! the paper, and points towards the neighbor.
 //!
 //! The formulas are written once for numbers and for lanes of a register ([`Real`]): no branches, so that a pair beyond
 //! the support adds an exact zero, and no division by q, so that a particle paired with itself adds no NaN.

@@ -1,6 +1,6 @@
 //! Wendland C4: w = (1 - q/2)⁶ (1 + 3q + 35/12 q²), -(w')/q = (14/3) (1 - q/2)⁵ (1 + 5/2 q) for q < 2.
 //!
-//! Normalization 9/(4π) in two dimensions, 495/(256π) in three. Smoother than C2; wants more neighbours.
+//! Normalization 9/(4π) in two dimensions, 495/(256π) in three. Smoother than C2; wants more neighbors.
 //!
 //! Source: H. Wendland, Adv. Comput. Math. 4 (1995) 389; W. Dehnen & H. Aly, MNRAS 425 (2012) 1068.
 

@@ -1,4 +1,4 @@
-//! Neighbours by looking at every pair: slow, and plainly right. The oracle of the tests.
+//! Neighbors by looking at every pair: slow, and plainly right. The oracle of the tests.
 
 use crate::dimension::Dimension;
 use crate::domain::Domain;

@@ -1,4 +1,4 @@
-//! Neighbours by a kd-tree: an oracle that shares nothing with the cell lists, and a probe for irregular clouds.
+//! Neighbors by a kd-tree: an oracle that shares nothing with the cell lists, and a probe for irregular clouds.
 //!
 //! The tree (crate `kiddo`) knows periodic axes. It proposes candidates in a radius wider by a rounding margin;
 //! [`Domain::distance`] decides, so that its answers agree with [`brute_force`](super::brute_force) to the last bit. For

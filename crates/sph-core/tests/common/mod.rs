@@ -34,7 +34,7 @@ pub fn jitter<D: Dimension>(packing: &mut Packing<D>, amplitude: f64, seed: u64)
     }
 }
 
-/// A cloud with unequal sizes, and the neighbours of each particle.
+/// A cloud with unequal sizes, and the neighbors of each particle.
 pub struct Cloud<D: Dimension> {
     pub packing: Packing<D>,
     pub size: Vec<f64>,
@@ -62,7 +62,7 @@ impl<D: Dimension> Cloud<D> {
     }
 }
 
-/// Neighbours of every particle of an open cloud.
+/// Neighbors of every particle of an open cloud.
 fn neighbors<D: Dimension>(
     cloud: &Packing<D>,
     size: &[f64],

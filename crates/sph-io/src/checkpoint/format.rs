@@ -95,8 +95,11 @@ fn pack(columns: &[(&str, ColumnData<'_>)]) -> Result<(Vec<Entry>, Vec<Vec<u8>>)
     Ok((entries, packed))
 }
 
+/// The header's bytes, and the columns with their names.
+type Content<'a> = (&'a [u8], Vec<(String, Column)>);
+
 /// Header and columns of a file, all checked.
-pub(super) fn decode(bytes: &[u8]) -> Result<(&[u8], Vec<(String, Column)>), Fault> {
+pub(super) fn decode(bytes: &[u8]) -> Result<Content<'_>, Fault> {
     let mut reader = Reader { rest: bytes, size: bytes.len() };
     if reader.take(MAGIC.len(), "the first word")? != MAGIC {
         return damaged("it does not begin as a checkpoint does");

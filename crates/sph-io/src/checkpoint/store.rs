@@ -36,7 +36,7 @@ impl CheckpointStore {
     /// Writes a checkpoint, then removes all but the last two. Returns its path.
     ///
     /// # Errors
-    /// As [`write`]; the earlier checkpoints then still stand.
+    /// As [`write()`]; the earlier checkpoints then still stand.
     pub fn save<H: Serialize>(
         &self,
         header: &H,

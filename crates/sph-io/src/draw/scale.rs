@@ -1,5 +1,8 @@
 //! From values to places on the canvas, linear or logarithmic.
 
+/// Beyond this no axis is drawn: the arithmetic of ranges and ticks must not overflow.
+const LARGEST: f64 = 1e300;
+
 /// An axis's range of values and the stretch of the canvas that shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
@@ -27,7 +30,7 @@ impl Scale {
 
 /// The range that shows all `values` with a margin on both sides; `(0, 1)` or `(1, 10)` if there are none.
 pub(crate) fn range_of(values: impl Iterator<Item = f64>, log: bool, margin: f64) -> (f64, f64) {
-    let usable = values.filter(|value| value.is_finite() && (!log || *value > 0.0));
+    let usable = values.filter(|value| value.abs() <= LARGEST && (!log || *value > 0.0));
     let (low, high) =
         usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     match (low <= high, log) {
@@ -36,7 +39,7 @@ pub(crate) fn range_of(values: impl Iterator<Item = f64>, log: bool, margin: f64
         (true, false) => widened(low, high, margin),
         (true, true) => {
             let (low, high) = widened(low.log10(), high.log10(), margin);
-            (10f64.powf(low), 10f64.powf(high))
+            (10f64.powf(low).max(1.0 / LARGEST), 10f64.powf(high).min(LARGEST))
         }
     }
 }
@@ -72,6 +75,7 @@ mod tests {
         assert_eq!(range_of([].into_iter(), false, 0.1), (0.0, 1.0));
         assert_eq!(range_of([f64::NAN, 2.0].into_iter(), false, 0.1), (1.8, 2.2));
         assert_eq!(range_of([0.0].into_iter(), false, 0.1), (-1.0, 1.0));
+        assert_eq!(range_of([1e-320, 1e300, f64::MAX].into_iter(), true, 0.1), (1e-300, 1e300));
         let (low, high) = range_of([-5.0, 0.0, 1.0, 100.0].into_iter(), true, 0.0);
         assert!((low - 1.0).abs() < 1e-12 && (high - 100.0).abs() < 1e-9);
     }

@@ -15,7 +15,12 @@ impl Ticks {
     /// About `wanted` ticks with words in the range.
     pub fn new(range: (f64, f64), log: bool, wanted: usize) -> Self {
         let wanted = wanted.max(2);
-        if log { logarithmic(range, wanted) } else { linear(range, wanted) }
+        if log {
+            return logarithmic(range, wanted);
+        }
+        // A short axis can fall between its round numbers: one tick alone gives no scale.
+        let mut tries = (wanted..wanted + 4).map(|wanted| linear(range, wanted));
+        tries.find(|ticks| ticks.major.len() > 1).unwrap_or_else(|| linear(range, wanted))
     }
 
     /// Ticks with words at given values.
@@ -48,10 +53,13 @@ fn nice_step(raw: f64) -> (f64, u32) {
     (factor * decade, n_parts)
 }
 
+/// More ticks than any axis has: an end to ranges so narrow or tiny that the step rounds to nothing.
+const MOST: usize = 500;
+
 fn multiples(step: f64, low: f64, high: f64) -> impl Iterator<Item = f64> {
     let slack = 1e-9;
     let (first, last) = ((low / step - slack).ceil() as i64, (high / step + slack).floor() as i64);
-    (first..=last).map(move |k| k as f64 * step)
+    (first..=last).take(MOST).map(move |k| k as f64 * step)
 }
 
 /// Long or tiny numbers are written with a common power of ten, a multiple of three.
@@ -120,6 +128,11 @@ mod tests {
     }
 
     #[test]
+    fn a_short_axis_has_two_numbers() {
+        assert_eq!(words((-9.99, 9.99), false, 2), ["−5", "0", "5"]);
+    }
+
+    #[test]
     fn long_numbers_share_a_power_of_ten() {
         let ticks = Ticks::new((0.0, 2.0e9), false, 4);
         assert_eq!(ticks.exponent, Some(9));
@@ -135,6 +148,13 @@ mod tests {
         assert_eq!(words((2.0e-6, 9.0e-6), true, 6).len(), 8);
         assert_eq!(words((0.01, 0.2), true, 6), ["0.01", "0.02", "0.05", "0.1", "0.2"]);
         assert!(words((1.01, 1.02), true, 5).len() >= 3);
+    }
+
+    #[test]
+    fn ranges_at_the_end_of_the_numbers_come_to_an_end() {
+        for range in [(0.0, 5e-324), (1.0, 1.0 + f64::EPSILON), (-f64::MAX, f64::MAX)] {
+            assert!(Ticks::new(range, false, 5).major.len() <= MOST);
+        }
     }
 
     #[test]

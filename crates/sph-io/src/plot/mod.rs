@@ -345,7 +345,7 @@ impl Figure {
 
 fn check_axis(axis: &Axis) -> Result<(), String> {
     let Some((low, high)) = axis.range else { return Ok(()) };
-    let usable = low < high && low.is_finite() && high.is_finite() && (!axis.log || low > 0.0);
+    let usable = low < high && low.abs().max(high.abs()) <= 1e300 && (!axis.log || low >= 1e-300);
     if usable { Ok(()) } else { Err(format!("axis `{}` has no range from {low} to {high}", axis.label)) }
 }
 

@@ -58,7 +58,7 @@ impl ArrayData<'_> {
 /// Particles at one moment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot<'a> {
-    /// Time [s], or in whatever unit the series counts.
+    /// Time `[s]`, or in whatever unit the series counts.
     pub time: f64,
     /// Places; z is 0 in two dimensions.
     pub points: &'a [[f64; 3]],

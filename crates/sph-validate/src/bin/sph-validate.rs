@@ -1,0 +1,163 @@
+//! `sph-validate`: runs the problems with known answers and holds the figures against their gates.
+//!
+//! Exit status: 0 when all gates passed, 2 for bad input, 3 for a numerical failure, 4 when a gate was missed.
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use sph_validate::case::{Case, SchemeName, SuiteName, Tier};
+use sph_validate::error::ValidateError;
+use sph_validate::gate::Significant;
+use sph_validate::plots::write_plots;
+use sph_validate::report::Report;
+use sph_validate::runner::{Status, run_all};
+use sph_validate::suites::{Outcome, plan};
+use sph_validate::summary::summary;
+
+const GATE_MISSED: u8 = 4;
+
+/// Runs problems with known answers, measures the errors and holds them against their gates.
+#[derive(Parser)]
+#[command(name = "sph-validate", version)]
+struct Arguments {
+    /// How much is run.
+    #[arg(long, value_enum, default_value_t)]
+    tier: Tier,
+    /// Only this problem; may be given more than once.
+    #[arg(long, value_enum)]
+    suite: Vec<SuiteName>,
+    /// Only this scheme; may be given more than once.
+    #[arg(long, value_enum)]
+    scheme: Vec<SchemeName>,
+    /// Folder for results.json, summary.md and the plots.
+    #[arg(long, default_value = "results/validation")]
+    out: PathBuf,
+    /// Runs side by side; as many as there are cores by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match validate(&arguments) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn validate(arguments: &Arguments) -> Result<u8, ValidateError> {
+    create_folder(&arguments.out)?;
+    let suites = if arguments.suite.is_empty() { &SuiteName::ALL[..] } else { &arguments.suite };
+    let schemes = if arguments.scheme.is_empty() { &SchemeName::ALL[..] } else { &arguments.scheme };
+    let mut cases = plan(suites, schemes, arguments.tier);
+    cases.sort_unstable();
+    cases.dedup();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.map_or(cores, usize::from);
+    eprintln!("{} runs of the {} tier on {threads} threads", cases.len(), arguments.tier.as_str());
+    let printer = Mutex::new(Printer::new());
+    let results = run_all(&cases, threads, &|status, ended| {
+        printer.lock().unwrap_or_else(|poison| poison.into_inner()).show(status, ended);
+    });
+    let report = Report::new(command(arguments), arguments.tier, &results)?;
+    write_files(&report, &results, &arguments.out)?;
+    print_tables(&report);
+    let failed = results.iter().filter_map(|(_, result)| result.as_ref().err());
+    let worst = failed.inspect(|error| eprintln!("error: {error}")).map(ValidateError::exit_code).max();
+    let gate_missed = report.failures().next().is_some();
+    Ok(worst.unwrap_or(if gate_missed { GATE_MISSED } else { 0 }))
+}
+
+fn create_folder(folder: &Path) -> Result<(), ValidateError> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| ValidateError::Output { path: folder.to_owned(), reason: error.to_string() })
+}
+
+/// The command that makes the same report.
+fn command(arguments: &Arguments) -> String {
+    let mut words = vec![format!("cargo xtask validate --tier {}", arguments.tier.as_str())];
+    words.extend(arguments.suite.iter().map(|suite| format!("--suite {suite}")));
+    words.extend(arguments.scheme.iter().map(|scheme| format!("--scheme {scheme}")));
+    words.join(" ")
+}
+
+fn write_files(
+    report: &Report,
+    results: &[(Case, Result<Outcome, ValidateError>)],
+    folder: &Path,
+) -> Result<(), ValidateError> {
+    let outcomes: Vec<&Outcome> = results.iter().filter_map(|(_, result)| result.as_ref().ok()).collect();
+    report.write_json(&folder.join("results.json"))?;
+    let plots = write_plots(&outcomes, folder)?;
+    let path = folder.join("summary.md");
+    sph_io::write_atomic(&path, summary(report, &plots).as_bytes())
+        .map_err(|error| ValidateError::Output { path, reason: error.to_string() })
+}
+
+fn print_tables(report: &Report) {
+    for suite in report.suites() {
+        println!("{}", report.table(suite));
+    }
+    let missed: Vec<_> = report.failures().collect();
+    println!("{} of {} gates passed", report.n_gates() - missed.len(), report.n_gates());
+    for row in missed {
+        let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
+        let gate = row.gate.map_or(String::new(), |gate| gate.to_string());
+        println!(
+            "missed: {} {} {n}: {} = {} {}, {gate}",
+            row.suite,
+            row.scheme,
+            row.metric,
+            Significant(row.value),
+            row.unit
+        );
+    }
+}
+
+/// Progress on the error stream: a line for every run that ends, and on a terminal a line that moves.
+struct Printer {
+    is_terminal: bool,
+    last: Instant,
+}
+
+impl Printer {
+    fn new() -> Self {
+        Self { is_terminal: std::io::stderr().is_terminal(), last: Instant::now() }
+    }
+
+    fn show(&mut self, status: Status, ended: Option<(Case, &Result<Outcome, ValidateError>)>) {
+        let state = progress_line(status);
+        if let Some((case, result)) = ended {
+            let what = match result {
+                Ok(outcome) => format!("{:.1} s", outcome.cost.seconds),
+                Err(error) => format!("FAILED: {error}"),
+            };
+            self.clear();
+            eprintln!("{state} | {case}: {what}");
+        } else if self.is_terminal && self.last.elapsed() > Duration::from_millis(300) {
+            self.clear();
+            eprint!("{state}");
+            // A lost progress line is not worth an error.
+            let _ = std::io::stderr().flush();
+            self.last = Instant::now();
+        }
+    }
+
+    fn clear(&self) {
+        if self.is_terminal {
+            eprint!("\r\x1b[2K");
+        }
+    }
+}
+
+fn progress_line(status: Status) -> String {
+    let left = status.time_left().map_or("?".into(), |seconds| format!("{seconds:.0} s"));
+    format!("{:3}/{} runs, {:3.0} %, {left} left", status.done, status.total, 100.0 * status.share)
+}

@@ -1,0 +1,128 @@
+//! Elastic-plastic Riemann problem: aluminum at σ_xx = -4 GPa against undisturbed aluminum.
+//!
+//! Domain 0.05 m around the jump, six rows of equally spaced particles (D = 0.05 m / N), periodic in y, θ = 0.5,
+//! t = 2 µs. Five frozen layers outside each end hold the initial states: a free end would send a wave into the
+//! domain. Left half: density ρ1 = ρ0 exp(P1/B), mass ρ1 D², deviator at the compressive yield limit.
+//!
+//! Measured: the mean over the particles of |σ_xx - exact| at their places, and where the four waves are: each
+//! crosses the mean of the stresses before and behind it.
+//!
+//! Source: Rublev and Murzov (2024), section 2.1.1.
+
+use sph_core::{Constraint, Dim2, Domain, Particles};
+use sph_materials::{EquationOfState, Material};
+
+use super::{Outcome, Progress, Run, material, particle_at};
+use crate::case::Case;
+use crate::error::ValidateError;
+use crate::metric::{Measurement, Metric, column_means, crossing, mean_absolute_difference};
+use crate::reference::riemann::{Release, Solid, Solution, State, solve};
+
+/// Length of the domain [m].
+pub const LENGTH: f64 = 0.05;
+/// Time of the comparison [s].
+pub const DURATION: f64 = 2e-6;
+const SMOOTHING: f64 = 0.5;
+const ROWS: u32 = 6;
+const FROZEN_LAYERS: u32 = 5;
+/// Stress of the left state [Pa].
+const LEFT_STRESS: f64 = -4e9;
+
+/// The problem: its solid, its two states and its solution.
+struct Problem {
+    left: State,
+    right: State,
+    solution: Solution,
+}
+
+impl Problem {
+    fn new(material: &Material) -> Result<Self, ValidateError> {
+        let EquationOfState::Logarithmic(law) = &material.equation_of_state else {
+            return Err(ValidateError::Material(
+                "the exact solution needs a logarithmic equation of state".into(),
+            ));
+        };
+        let solid = Solid {
+            density: material.reference_density,
+            bulk_modulus: law.bulk_modulus,
+            shear_modulus: material.strength.shear_modulus(),
+            yield_strength: material.strength.yield_strength(),
+        };
+        let (left, right) = (solid.at_compressive_yield(LEFT_STRESS), solid.at_rest());
+        Ok(Self { left, right, solution: solve(solid, left, right, Release::Fan)? })
+    }
+}
+
+/// Runs one resolution.
+pub fn run(case: Case, progress: Progress<'_>) -> Result<Outcome, ValidateError> {
+    let material = material("aluminium-riemann")?;
+    let problem = Problem::new(&material)?;
+    let size = LENGTH / f64::from(case.n);
+    let half = 0.5 * LENGTH + f64::from(FROZEN_LAYERS) * size;
+    let domain = Domain::new([-half, 0.0].into(), [half, f64::from(ROWS) * size].into(), [false, true]);
+    let mut run = Run::new(case, domain, material, particles(case.n, &problem), SMOOTHING)?;
+    run.advance(DURATION, progress)?;
+    let stresses = stresses(&run);
+    let mut measurements = vec![stress_error(&stresses, &problem.solution)];
+    let profile = column_means(stresses, ROWS as usize);
+    measurements.extend(shifts(&profile, &problem.solution));
+    measurements.push(run.energy_drift());
+    let curve = profile.iter().map(|&(x, stress)| (1e3 * x, 1e-9 * stress)).collect();
+    Ok(Outcome { case, measurements, curve, fields: Vec::new(), cost: run.cost() })
+}
+
+/// The exact profile of the plot: x [mm], σ_xx [GPa].
+pub fn reference_curve() -> Result<Vec<(f64, f64)>, ValidateError> {
+    let solution = Problem::new(&material("aluminium-riemann")?)?.solution;
+    let places = (0..=4000).map(|k| LENGTH * (f64::from(k) / 4000.0 - 0.5));
+    Ok(places.map(|x| (1e3 * x, 1e-9 * solution.sample(x / DURATION).stress)).collect())
+}
+
+fn particles(n: u32, problem: &Problem) -> Particles<Dim2> {
+    let size = LENGTH / f64::from(n);
+    let mut particles = Particles::default();
+    for column in 0..n + 2 * FROZEN_LAYERS {
+        // Columns count from the frozen layers on; the jump lies between two columns.
+        let offset = f64::from(column) - f64::from(FROZEN_LAYERS) - 0.5 * f64::from(n) + 0.5;
+        let state = if offset < 0.0 { &problem.left } else { &problem.right };
+        let is_outside = column < FROZEN_LAYERS || column >= n + FROZEN_LAYERS;
+        for row in 0..ROWS {
+            let position = [offset * size, (f64::from(row) + 0.5) * size];
+            let mut particle = particle_at(particles.len(), position, size, state.density);
+            particle.constraint = if is_outside { Constraint::Frozen } else { Constraint::Free };
+            let s = state.deviator;
+            particle.deviator = [s, -0.5 * s, -0.5 * s, 0.0];
+            particles.push(particle);
+        }
+    }
+    particles
+}
+
+/// Place x [m] and stress σ_xx [Pa] of the particles of the domain.
+fn stresses(run: &Run) -> Vec<(f64, f64)> {
+    let particles = run.simulation.particles();
+    let free = (0..particles.len()).filter(|&i| particles.constraint[i] == Constraint::Free);
+    free.map(|i| (particles.position[0][i], run.simulation.stress(i)[0])).collect()
+}
+
+fn stress_error(stresses: &[(f64, f64)], solution: &Solution) -> Measurement {
+    let pairs = stresses.iter().map(|&(x, stress)| (stress, solution.sample(x / DURATION).stress));
+    Measurement::error_of(Metric::StressL1, 1e-9 * mean_absolute_difference(pairs))
+}
+
+/// Where each wave is, less where it should be. A wave that the profile does not show is a not-a-number: its gate
+/// fails.
+fn shifts(profile: &[(f64, f64)], solution: &Solution) -> Vec<Measurement> {
+    let names = [
+        Metric::ElasticReleaseShift,
+        Metric::PlasticReleaseShift,
+        Metric::PlasticCompressionShift,
+        Metric::PrecursorShift,
+    ];
+    let shift = |(metric, wave)| {
+        let exact = DURATION * solution.middle_ray(wave);
+        let found = crossing(profile, wave.middle_stress(), exact).unwrap_or(f64::NAN);
+        Measurement::error_of(metric, 1e3 * (found - exact))
+    };
+    names.into_iter().zip(solution.waves()).map(shift).collect()
+}

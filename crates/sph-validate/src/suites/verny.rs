@@ -1,0 +1,271 @@
+//! Verney's cylindrical shell: an aluminum tube that moves inwards until plastic work has stopped it.
+//!
+//! R0 = 0.08 m, R1 = 0.1 m, u(r) = -U0 R0/r with U0 = 208.55 m/s, both surfaces free, θ = 0.5. The full tube is filled
+//! with n concentric rings of particles of spacing D0 = 20 mm / n, as many in a ring as fit at that spacing.
+//!
+//! Measured: the inner radius at the stop, sqrt(R0² + change of the mean of r²), over all of the material and over the
+//! innermost ring. Both are the inner radius of an incompressible shell, in which r² changes alike everywhere.
+//!
+//! Reference: the same shell on a Lagrangian mesh ([`crate::reference::lagrangian`]), with the same two readings. The
+//! rigid-plastic formula ([`crate::reference::verney`]) gives 66.716 mm and is shown beside it.
+//!
+//! Source: Howell and Ball, J. Comput. Phys. 175 (2002) 128; Rublev and Murzov (2024), section 2.1.3.
+
+use std::sync::OnceLock;
+
+use sph_core::geometry::concentric_rings;
+use sph_core::{CoreError, Dim2, Domain, Particle, Particles};
+
+use super::{Field, Outcome, Progress, Run, material};
+use crate::case::Case;
+use crate::error::ValidateError;
+use crate::metric::{Measurement, Metric};
+use crate::reference::lagrangian::{Ends, Mesh, Scheme, Solid, Symmetry, Viscosity, Zone};
+use crate::reference::verney::Shell;
+
+/// Inner radius R0 [m].
+pub const INNER_RADIUS: f64 = 0.08;
+/// Outer radius R1 [m].
+pub const OUTER_RADIUS: f64 = 0.1;
+/// Velocity U0 of the inner surface [m/s].
+const VELOCITY: f64 = 208.55;
+const SMOOTHING: f64 = 0.5;
+const ZONES: usize = 400;
+/// The stop is not looked for before this time [s]: waves across the wall do not stop the shell.
+const EARLIEST_STOP: f64 = 60e-6;
+/// How long both readings must have risen again [s].
+const AFTER_STOP: f64 = 6e-6;
+/// A shell that still moves inwards now does not stop [s].
+const LATEST_STOP: f64 = 250e-6;
+
+/// The least of a reading over time.
+#[derive(Clone, Copy, Debug)]
+struct Least {
+    value: f64,
+    time: f64,
+}
+
+impl Least {
+    const NONE: Self = Self { value: f64::INFINITY, time: 0.0 };
+
+    fn see(&mut self, value: f64, time: f64) {
+        if value < self.value {
+            *self = Self { value, time };
+        }
+    }
+}
+
+/// Both readings of r² of the inner surface [m²], at their least.
+struct Stop {
+    /// From all of the material.
+    all: Least,
+    /// From its innermost layer.
+    ring: Least,
+}
+
+impl Stop {
+    const UNSEEN: Self = Self { all: Least::NONE, ring: Least::NONE };
+
+    fn is_over(&self, time: f64) -> bool {
+        time > EARLIEST_STOP && time > self.all.time.max(self.ring.time) + AFTER_STOP
+    }
+
+    /// Inner radii [mm] from all of the material and from its innermost layer.
+    fn radii(&self) -> [f64; 2] {
+        [self.all, self.ring].map(|least| 1e3 * least.value.sqrt())
+    }
+
+    /// The stop on the mesh, computed once a process.
+    fn reference() -> &'static Self {
+        static REFERENCE: OnceLock<Stop> = OnceLock::new();
+        REFERENCE.get_or_init(Self::compute)
+    }
+
+    /// The numbers of the material are written out here, so that a fault of the library shows as an error.
+    fn compute() -> Self {
+        const DENSITY: f64 = 2785.0;
+        let solid = Solid {
+            pressure: &|density, energy| 5328.0 * 5328.0 * (density - DENSITY) + density * energy,
+            shear_modulus: 27.6e9,
+            yield_strength: 0.3e9,
+            sound_speed: 6600.0,
+        };
+        let scheme = Scheme {
+            symmetry: Symmetry::Cylindrical,
+            ends: Ends::Free,
+            cfl: 0.7,
+            viscosity: Viscosity::default(),
+        };
+        let rest = Zone { density: DENSITY, energy: 0.0, deviator: [0.0; 3] };
+        let ends = [INNER_RADIUS, OUTER_RADIUS];
+        let mut mesh = Mesh::new(solid, scheme, ends, ZONES, |_| rest, |r| -speed(r));
+        let start = mesh.mean_square_radius();
+        let mut stop = Self::UNSEEN;
+        while !stop.is_over(mesh.time()) {
+            mesh.step(mesh.time_step());
+            stop.all.see(INNER_RADIUS.powi(2) + mesh.mean_square_radius() - start, mesh.time());
+            stop.ring.see(mesh.radius()[0].powi(2), mesh.time());
+        }
+        stop
+    }
+}
+
+/// Initial speed inwards [m/s] at radius `r` [m].
+fn speed(r: f64) -> f64 {
+    VELOCITY * INNER_RADIUS / r
+}
+
+/// Inner radius at the stop [mm] as the figure of the suite shows it: (rigid-plastic formula, mesh by r², mesh inner).
+pub fn references() -> Result<[f64; 3], ValidateError> {
+    let material = material("aluminium-verney")?;
+    let shell = Shell {
+        inner_radius: INNER_RADIUS,
+        outer_radius: OUTER_RADIUS,
+        density: material.reference_density,
+        yield_strength: material.strength.yield_strength(),
+    };
+    let formula = shell.stop_radius(VELOCITY).unwrap_or(f64::NAN);
+    let [all, inner] = Stop::reference().radii();
+    Ok([1e3 * formula, all, inner])
+}
+
+/// Runs one resolution.
+pub fn run(case: Case, progress: Progress<'_>) -> Result<Outcome, ValidateError> {
+    let material = material("aluminium-verney")?;
+    let particles = particles(case.n, material.reference_density)
+        .map_err(|error| ValidateError::Packing { case, reason: error.to_string() })?;
+    let reader = Reader::new(&particles);
+    let mut run = Run::new(case, Domain::open(), material, particles, SMOOTHING)?;
+    let (mut stop, mut pictured) = (Stop::UNSEEN, 0.0);
+    let mut fields = vec![start_field(&run)];
+    while !stop.is_over(run.simulation.time()) {
+        if run.simulation.time() >= LATEST_STOP {
+            return Err(ValidateError::NotStopped { case, limit: LATEST_STOP });
+        }
+        run.step(LATEST_STOP)?;
+        let time = run.simulation.time();
+        reader.read(&run, &mut stop);
+        // The picture of the stop: the first step after the least of the mean square radius, the last such one.
+        if time > EARLIEST_STOP && stop.all.time < time && pictured != stop.all.time {
+            pictured = stop.all.time;
+            fields.truncate(1);
+            fields.push(stop_field(&run));
+        }
+        progress((time / 135e-6).min(1.0));
+    }
+    let mut measurements = measurements(&stop).to_vec();
+    measurements.push(run.energy_drift());
+    let curve = vec![(20.0 / f64::from(case.n), stop.radii()[0])];
+    Ok(Outcome { case, measurements, curve, fields, cost: run.cost() })
+}
+
+fn measurements(stop: &Stop) -> [Measurement; 3] {
+    let exact = Stop::reference();
+    let ([all, ring], [exact_all, exact_inner]) = (stop.radii(), exact.radii());
+    let (time, exact_time) = (1e6 * stop.ring.time, 1e6 * exact.ring.time);
+    [
+        Measurement { metric: Metric::StopRadiusBySquare, value: all, reference: exact_all },
+        Measurement { metric: Metric::StopRadiusByRing, value: ring, reference: exact_inner },
+        Measurement { metric: Metric::StopTime, value: time, reference: exact_time },
+    ]
+}
+
+/// Rings of spacing D0, the innermost first.
+fn particles(rings: u32, density: f64) -> Result<Particles<Dim2>, CoreError> {
+    let size = (OUTER_RADIUS - INNER_RADIUS) / f64::from(rings);
+    let packing = concentric_rings(Default::default(), INNER_RADIUS, OUTER_RADIUS, size)?;
+    let mut particles = Particles::default();
+    for (point, volume) in packing.points().zip(&packing.volume) {
+        let mut particle = Particle::at_rest(particles.len() as u64, point, density * volume, size, density);
+        let radius = point.length();
+        particle.velocity = point * (-speed(radius) / radius);
+        particles.push(particle);
+    }
+    Ok(particles)
+}
+
+/// Reads r² of the inner surface from the particles: R0² and the change of the mean r², of all and of the innermost
+/// ring. In an incompressible shell r² changes alike everywhere.
+struct Reader {
+    /// The innermost ring has the first identifiers: how many.
+    innermost: u64,
+    /// Mean r² of all and of the innermost ring at the start [m²].
+    start: [f64; 2],
+}
+
+impl Reader {
+    fn new(particles: &Particles<Dim2>) -> Self {
+        let limit = square_radius(particles, 0) * (1.0 + 1e-9);
+        let is_innermost = |i: &usize| square_radius(particles, *i) < limit;
+        let innermost = (0..particles.len()).filter(is_innermost).count() as u64;
+        let mut reader = Self { innermost, start: [0.0; 2] };
+        reader.start = reader.means(particles);
+        reader
+    }
+
+    /// Mean r² of all of the material and of its innermost ring [m²].
+    fn means(&self, particles: &Particles<Dim2>) -> [f64; 2] {
+        let (mut mass, mut all, mut ring) = (0.0, 0.0, 0.0);
+        for i in 0..particles.len() {
+            let square = square_radius(particles, i);
+            mass += particles.mass[i];
+            all += particles.mass[i] * square;
+            if particles.id[i] < self.innermost {
+                ring += square;
+            }
+        }
+        [all / mass, ring / self.innermost as f64]
+    }
+
+    fn read(&self, run: &Run, stop: &mut Stop) {
+        let [all, ring] = self.means(run.simulation.particles());
+        let time = run.simulation.time();
+        stop.all.see(INNER_RADIUS.powi(2) + all - self.start[0], time);
+        stop.ring.see(INNER_RADIUS.powi(2) + ring - self.start[1], time);
+    }
+}
+
+fn square_radius(particles: &Particles<Dim2>, i: usize) -> f64 {
+    particles.position[0][i].powi(2) + particles.position[1][i].powi(2)
+}
+
+/// The picture of the start: the radial speed inwards.
+fn start_field(run: &Run) -> Field {
+    let particles = run.simulation.particles();
+    let inwards = |i: usize| {
+        let product: f64 = (0..2).map(|a| particles.position[a][i] * particles.velocity[a][i]).sum();
+        -product / square_radius(particles, i).sqrt()
+    };
+    field(run, "start", ("radial speed inwards [m/s]", (160.0, 210.0)), inwards)
+}
+
+/// The picture of the stop: the von Mises stress.
+fn stop_field(run: &Run) -> Field {
+    let particles = run.simulation.particles();
+    let mises = |i: usize| {
+        let [xx, yy, zz, xy]: [f64; 4] = std::array::from_fn(|k| particles.deviator[k][i]);
+        1e-9 * (1.5 * (xx * xx + yy * yy + zz * zz + 2.0 * xy * xy)).sqrt()
+    };
+    field(run, "stop", ("σ_{vM} [GPa]", (0.0, 0.3)), mises)
+}
+
+fn field(
+    run: &Run,
+    moment: &'static str,
+    (label, range): (&'static str, (f64, f64)),
+    value: impl Fn(usize) -> f64,
+) -> Field {
+    let particles = run.simulation.particles();
+    let millimeters = |column: &[f64]| column.iter().map(|x| 1e3 * x).collect();
+    let extent = |i: usize| 1e3 * (particles.mass[i] / particles.density[i]).sqrt();
+    Field {
+        moment,
+        title: format!("{}, t = {:.1} µs", run.case.scheme.title(), 1e6 * run.simulation.time()),
+        label,
+        range,
+        x: millimeters(&particles.position[0]),
+        y: millimeters(&particles.position[1]),
+        size: (0..particles.len()).map(extent).collect(),
+        values: (0..particles.len()).map(value).collect(),
+    }
+}

@@ -1,0 +1,105 @@
+//! `summary.md`: the tables of a validation for readers, figures over resolutions.
+
+use std::fmt::Write as _;
+
+use crate::case::{SchemeName, SuiteName};
+use crate::gate::{GateFile, Significant};
+use crate::report::{Report, Row};
+
+/// The whole document. Plots are taken to lie beside it.
+pub fn summary(report: &Report, plots: &[(SuiteName, String)]) -> String {
+    let mut text = String::from("# Validation\n\n");
+    let n_failed = report.failures().count();
+    let _ = writeln!(text, "Made by `{}` ({} tier).", report.command, report.tier.as_str());
+    let _ = writeln!(text, "{} of {} gates passed.\n", report.n_gates() - n_failed, report.n_gates());
+    text.push_str(concat!(
+        "A figure in bold missed its gate: it must not be farther from the reference than the published figure of ",
+        "the same run (half a unit of its last printed digit allowed), nor than what this program has reached before ",
+        "(a twentieth allowed). Order: of the whole row, by least squares in ln n. Set-ups, references and gates: ",
+        "`validation/<suite>/`.\n\n",
+    ));
+    for suite in report.suites() {
+        push_suite(&mut text, report, suite);
+        for (_, plot) in plots.iter().filter(|(of, _)| *of == suite) {
+            let _ = writeln!(text, "![{}]({plot})\n", suite.title());
+        }
+    }
+    push_failures(&mut text, report);
+    push_costs(&mut text, report);
+    text
+}
+
+fn push_suite(text: &mut String, report: &Report, suite: SuiteName) {
+    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.suite == suite).collect();
+    let mut resolutions: Vec<u32> = rows.iter().filter_map(|row| row.n).collect();
+    resolutions.sort_unstable();
+    resolutions.dedup();
+    let _ = writeln!(text, "## {}\n\nn: {}.", suite.title(), suite.resolution_name());
+    if let Ok(gates) = GateFile::of(suite) {
+        let _ = writeln!(text, "Source of the gates: {}.", gates.source);
+    }
+    let heads: Vec<String> = resolutions.iter().map(|n| format!(" n = {n} |")).collect();
+    let _ = writeln!(text, "\n| scheme | figure | reference |{} order |", heads.concat());
+    let _ = writeln!(text, "|---|---|---|{}---|", "---|".repeat(resolutions.len()));
+    let mut seen: Vec<(SchemeName, &str)> = Vec::new();
+    for row in rows.iter().filter(|row| row.n.is_some()) {
+        let line = (row.scheme, row.metric.as_str());
+        if !seen.contains(&line) {
+            seen.push(line);
+            push_line(text, &rows, line, &resolutions);
+        }
+    }
+    text.push('\n');
+}
+
+/// One line of a suite's table: a figure of a scheme over the resolutions.
+fn push_line(text: &mut String, rows: &[&Row], (scheme, metric): (SchemeName, &str), resolutions: &[u32]) {
+    let of_scheme = || rows.iter().filter(move |row| row.scheme == scheme);
+    let cells: Vec<&&Row> = of_scheme().filter(|row| row.metric == metric).collect();
+    let Some(first) = cells.first() else { return };
+    let reference = first.reference.filter(|&value| value != 0.0);
+    let reference = reference.map_or(String::new(), |value| format!("{:.5}", Significant(value)));
+    let _ =
+        write!(text, "| {} | {} [{}] | {reference} |", scheme.title(), metric.replace('_', " "), first.unit);
+    for n in resolutions {
+        let cell = cells.iter().find(|row| row.n == Some(*n));
+        let _ = write!(text, " {} |", cell.map_or(String::new(), |row| shown(row)));
+    }
+    let order = of_scheme().find(|row| row.n.is_none() && row.metric == format!("{metric}_order"));
+    let _ = writeln!(text, " {} |", order.map_or(String::new(), |row| shown(row)));
+}
+
+/// The value, bold where it missed its gate.
+fn shown(row: &Row) -> String {
+    let digits = if row.reference.is_some_and(|reference| reference != 0.0) { 5 } else { 3 };
+    let value = format!("{:.*}", digits, Significant(row.value));
+    if row.passed == Some(false) { format!("**{value}**") } else { value }
+}
+
+fn push_failures(text: &mut String, report: &Report) {
+    let failures = report.runs.iter().filter_map(|run| run.failure.as_ref());
+    let lines: Vec<String> = failures.map(|failure| format!("- {failure}\n")).collect();
+    if !lines.is_empty() {
+        let _ = writeln!(text, "## Runs that failed\n\n{}", lines.concat());
+    }
+}
+
+fn push_costs(text: &mut String, report: &Report) {
+    text.push_str("## Cost\n\nOne core a run; runs side by side share the machine.\n\n");
+    text.push_str("| suite | scheme | n | particles | steps | wall time, s | million particle-steps/s |\n");
+    text.push_str("|---|---|---|---|---|---|---|\n");
+    for run in &report.runs {
+        let Some(cost) = run.cost else { continue };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {:.1} | {:.2} |",
+            run.case.suite,
+            run.case.scheme.title(),
+            run.case.n,
+            cost.particles,
+            cost.steps,
+            cost.seconds,
+            cost.million_particle_steps_per_second
+        );
+    }
+}

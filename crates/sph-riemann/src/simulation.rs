@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use sph_core::dimension::{Components, Vector};
 use sph_core::domain::Domain;
-use sph_core::lanes::{LANES, Line};
+use sph_core::lanes::{InstructionSet, LANES, Line};
 use sph_core::neighbors::cell_grid::sort_particles;
 use sph_core::neighbors::{NeighborLists, Reach, TILE};
 use sph_core::particles::{Constraint, Particles};
@@ -41,6 +41,7 @@ pub struct Simulation<D: SolidDimension> {
     lists_valid: bool,
     scratch: Scratch,
     stage_times: StageTimes,
+    instructions: InstructionSet,
 }
 
 /// Arrays that live as long as the neighbour lists.
@@ -110,7 +111,18 @@ impl<D: SolidDimension> Simulation<D> {
             lists_valid: false,
             scratch: Scratch::default(),
             stage_times: StageTimes::default(),
+            instructions: InstructionSet::detect(),
         })
+    }
+
+    /// The same simulation with other instructions than the widest of this machine: the bits do not change, the speed
+    /// does.
+    ///
+    /// # Panics
+    /// Later, in a step, if the machine does not have them.
+    pub fn with_instructions(mut self, instructions: InstructionSet) -> Self {
+        self.instructions = instructions;
+        self
     }
 
     /// One step, as long as the Courant number allows.
@@ -183,7 +195,7 @@ impl<D: SolidDimension> Simulation<D> {
 
     fn measure_volumes(&mut self) {
         if let Some(settings) = self.settings.volume_consistency {
-            volume::measure(&mut self.particles, &self.domain, &settings);
+            volume::measure(&mut self.particles, &self.domain, &settings, self.instructions);
         }
     }
 
@@ -223,6 +235,7 @@ impl<D: SolidDimension> Simulation<D> {
                 surface: self.settings.surface,
                 records: &s.state,
                 half_step: if self.settings.scheme.is_time_centered() { 0.5 * time_step } else { 0.0 },
+                instructions: self.instructions,
             };
             pass.run(&mut s.sides, &mut s.rows);
         } else {
@@ -252,6 +265,7 @@ impl<D: SolidDimension> Simulation<D> {
             surface: self.effective_surface(),
             records: &self.scratch.sides,
             half_step: 0.0,
+            instructions: self.instructions,
         };
         pass.run(&mut [], &mut self.scratch.rows);
     }
@@ -270,6 +284,7 @@ impl<D: SolidDimension> Simulation<D> {
             surface: self.settings.surface,
             records: &s.sides,
             half_step: 0.0,
+            instructions: self.instructions,
         };
         pass.run(&mut [], &mut s.rows);
     }

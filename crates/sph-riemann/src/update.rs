@@ -369,7 +369,8 @@ fn relaxation_rate(
     } else {
         return 0.0;
     };
-    if yield_strength == 0.0 || fixed.constraint[i] != Constraint::Free {
+    let yields = yield_strength > 0.0 && yield_strength.is_finite();
+    if !yields || fixed.constraint[i] != Constraint::Free {
         return 0.0;
     }
     let sound_speed = row(Row::LONGITUDINAL) * row(Row::INVERSE_DENSITY);

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::domain::Domain;
 use sph_core::kernel::KernelFamily;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, dispatch};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, dispatch_with};
 use sph_core::neighbors::cell_grid::CellSortedPoints;
 use sph_core::neighbors::{Halo, TILE};
 use sph_core::particles::{Constraint, Particles};
@@ -33,7 +33,12 @@ use sph_core::particles::{Constraint, Particles};
 use crate::scheme::VolumeConsistency;
 
 /// Fills the column `packing_excess` with ΔS, zero near imposed particles.
-pub fn measure<D: Dimension>(particles: &mut Particles<D>, domain: &Domain<D>, settings: &VolumeConsistency) {
+pub fn measure<D: Dimension>(
+    particles: &mut Particles<D>,
+    domain: &Domain<D>,
+    settings: &VolumeConsistency,
+    instructions: InstructionSet,
+) {
     let largest = particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
     if particles.is_empty() || largest == 0.0 {
         return;
@@ -57,7 +62,8 @@ pub fn measure<D: Dimension>(particles: &mut Particles<D>, domain: &Domain<D>, s
     let (own, size) = (&particles.position, &particles.size);
     particles.packing_excess.par_chunks_mut(TILE).enumerate().for_each(|(t, excess)| {
         let first = t * TILE;
-        dispatch(VolumeSumTile::<D> { sum, own, size, first, width: settings.width, lattice, excess });
+        let tile = VolumeSumTile::<D> { sum, own, size, first, width: settings.width, lattice, excess };
+        dispatch_with(instructions, tile);
     });
 }
 

@@ -151,7 +151,10 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         for a in 0..D::COUNT {
             force[a] = weight * force[a];
         }
-        Some(PairContact { gradient, force, velocity, relative_speed_squared: dot::<D, L>(&du, &du) })
+        // Pairs of the skin do not count: when lists are rebuilt must not matter.
+        let support = L::splat(pass.smoothing.support());
+        let relative_speed_squared = q.select_less(support, dot::<D, L>(&du, &du), L::zero());
+        Some(PairContact { gradient, force, velocity, relative_speed_squared })
     }
 }
 

@@ -152,9 +152,18 @@ fn finish<D: SolidDimension, L: Lanes>(
         sums.matrix[k].store(&mut rows[Row::gradient_matrix::<D>() + k].0);
     }
     let mut record = D::SidesRecord::<L>::splat(L::zero());
-    for k in 0..=D::COUNT {
-        record[k] = own[k]; // Position and volume.
+    // Position and volume half a step later: forces that do not see the turn of the pairs would spin a disc up.
+    let step = L::splat(pass.half_step);
+    let mut expansion = slopes[0][0];
+    for a in 1..D::COUNT {
+        expansion += slopes[a][a];
     }
+    let growth = step.mul_add(expansion, L::one());
+    for a in 0..D::COUNT {
+        record[a] = step.mul_add(own[State::fields::<D>() + a], own[a]);
+    }
+    record[State::volume::<D>()] = growth * own[State::volume::<D>()];
+    (growth * L::load(&rows[Row::INVERSE_DENSITY].0)).store(&mut rows[Row::INVERSE_DENSITY].0);
     record[Sides::longitudinal::<D>()] = L::load(&rows[Row::LONGITUDINAL].0);
     record[Sides::transverse::<D>()] = L::load(&rows[Row::TRANSVERSE].0);
     for c in 0..D::SPIN_COUNT {

@@ -10,7 +10,7 @@ mod smoothing;
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, Lanes, Line, dispatch};
+use sph_core::lanes::{InstructionSet, LANES, Lanes, Line, dispatch_with};
 use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS, TileLists};
 
 use crate::dimension::SolidDimension;
@@ -34,6 +34,8 @@ pub struct Pass<'a, D: SolidDimension> {
     pub records: &'a [Line],
     /// Half the time step [s], zero in schemes without a half step.
     pub half_step: f64,
+    /// Instructions to use.
+    pub instructions: InstructionSet,
 }
 
 /// The passes.
@@ -76,17 +78,20 @@ impl<D: SolidDimension> Pass<'_, D> {
 
     /// Runs one tile with the widest lanes of this machine.
     pub(crate) fn dispatch(&self, tile: Tile<'_>) {
+        let set = self.instructions;
         match self.kind {
-            PassKind::Gradient(flags) => dispatch(gradient::GradientTile { pass: self, tile, flags }),
+            PassKind::Gradient(flags) => {
+                dispatch_with(set, gradient::GradientTile { pass: self, tile, flags })
+            }
             PassKind::PlainContact => {
                 let limiter = Limiter::default(); // Not asked for.
-                dispatch(contact::ContactTile::<D, false> { pass: self, tile, limiter });
+                dispatch_with(set, contact::ContactTile::<D, false> { pass: self, tile, limiter });
             }
             PassKind::Contact(limiter) => {
-                dispatch(contact::ContactTile::<D, true> { pass: self, tile, limiter });
+                dispatch_with(set, contact::ContactTile::<D, true> { pass: self, tile, limiter });
             }
             PassKind::Centering(limiter, delta, marked) => {
-                dispatch(centering::CenteringTile { pass: self, tile, limiter, delta, marked });
+                dispatch_with(set, centering::CenteringTile { pass: self, tile, limiter, delta, marked });
             }
         }
     }

@@ -28,6 +28,7 @@ const EXAMPLES: &str = "Examples:
   hugoniot run case.ron --up 100,150         two points only
   hugoniot run case.ron --out results/a --threads 2 --quiet
 
+RUST_LOG=info tells of each point when start-up ends and what each block gives.
 Exit codes: 0 done, 2 bad input, 3 a point failed, 130 interrupted";
 
 /// From a case file to the shock Hugoniot u_s(u_p) of a porous solid, with uncertainty.

@@ -21,6 +21,9 @@ use crate::outcome::{PointOutcome, Status};
 use crate::setup;
 use crate::statistics::{mean, relative_spread};
 
+/// Cells over which the place of the front is smoothed for the profiles.
+const FRONT_MEMORY: f64 = 2.0;
+
 /// What watches and steers a running point.
 pub trait Control: Sync {
     /// True when the point should stop where it is.
@@ -60,7 +63,9 @@ struct Point<'c> {
     sample: &'c Sample,
     particle_velocity: f64,
     window: Window<Dim2>,
-    last_look: Option<f64>,
+    last_look: Option<Observation>,
+    /// Place of the front, smoothed over [`FRONT_MEMORY`] [m].
+    mean_front: f64,
     /// Swept length from which blocks are counted, once known [m].
     blocks_from: Option<f64>,
     /// One profile for each block; the last one is under way.
@@ -78,6 +83,7 @@ impl<'c> Point<'c> {
             particle_velocity,
             window,
             last_look: None,
+            mean_front: 0.0,
             blocks_from: None,
             profiles: Vec::new(),
         })
@@ -103,21 +109,38 @@ impl<'c> Point<'c> {
 
     /// Takes a look at the front in; the status if the point has come to its end.
     fn look(&mut self, now: &Observation) -> Option<Status> {
-        let weight = now.time - self.last_look.replace(now.time).unwrap_or(now.time);
+        let before = self.last_look.replace(*now).unwrap_or(*now);
+        self.smooth_front(now, &before);
         if self.blocks_from.is_none() && self.startup_is_over() {
+            tracing::info!(
+                u_p = self.particle_velocity,
+                cells = now.swept / self.sample.cell,
+                "start-up is over"
+            );
             self.blocks_from = Some(now.swept);
             self.profiles.push(self.new_profile());
         }
         if let Some(profile) = self.profiles.last_mut() {
-            profile.observe(&self.window, now.front, weight);
+            profile.observe(&self.window, self.mean_front, now.time - before.time);
         }
         if self.blocks_from.is_some() && self.full_blocks() >= self.profiles.len() {
+            tracing::info!(u_p = self.particle_velocity, u_s = ?self.counted_blocks(), "blocks");
             if self.has_settled() {
                 return Some(Status::Settled);
             }
             self.profiles.push(self.new_profile());
         }
         (self.window.fed_cells() >= self.case.stop.max_fed_cells as f64).then_some(Status::NotSettled)
+    }
+
+    /// The front hops from pore to pore; profiles are taken where it is on the mean of a few cells, so that the pores
+    /// pass through them.
+    fn smooth_front(&mut self, now: &Observation, before: &Observation) {
+        if self.mean_front == 0.0 {
+            self.mean_front = now.front;
+        }
+        let swept = (now.swept - before.swept) / self.sample.cell;
+        self.mean_front += (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.mean_front);
     }
 
     fn new_profile(&self) -> FrontProfile {
@@ -153,9 +176,13 @@ impl<'c> Point<'c> {
         cells[full.saturating_sub(stop.blocks * stop.block_cells)..full].to_vec()
     }
 
+    /// u_s of the last blocks [m/s].
+    fn counted_blocks(&self) -> Vec<f64> {
+        self.counted_cells().chunks(self.case.stop.block_cells).map(harmonic_mean).collect()
+    }
+
     fn has_settled(&self) -> bool {
-        let (stop, cells) = (&self.case.stop, self.counted_cells());
-        let blocks: Vec<f64> = cells.chunks(stop.block_cells).map(harmonic_mean).collect();
+        let (stop, blocks) = (&self.case.stop, self.counted_blocks());
         blocks.len() >= stop.blocks && relative_spread(&blocks) <= stop.tolerance
     }
 
@@ -187,7 +214,8 @@ impl<'c> Point<'c> {
         let profile = self.profile();
         let margins = window.settings().plateau;
         let (cell, size) = (self.sample.cell, self.case.medium.particle_size);
-        let states = profile.as_ref().and_then(|p| States::read(p, &margins, cell, size));
+        let whole = profile.as_ref().filter(|_| self.full_blocks() > 0);
+        let states = whole.and_then(|p| States::read(p, &margins, cell, size));
         let shock_velocity = if cells.is_empty() { f64::NAN } else { harmonic_mean(&cells) };
         let simulation = window.simulation();
         PointOutcome {
@@ -212,7 +240,7 @@ impl<'c> Point<'c> {
                 .collect(),
             profile: profile.map(|p| p.bins()).unwrap_or_default(),
             fields: Fields::of(window),
-            stages: simulation.stage_times().clone(),
+            stages: *simulation.stage_times(),
             status,
             wall_seconds: 0.0,
         }

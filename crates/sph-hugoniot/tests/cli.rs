@@ -51,7 +51,7 @@ fn check_tells_what_a_case_resolves_to() {
 #[test]
 fn a_broken_file_lists_all_faults_and_exits_with_two() {
     let bad = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/bad/many_faults.ron");
-    for command in ["check"] {
+    for command in ["check", "run"] {
         let assert = hugoniot().arg(command).arg(&bad).assert().code(2);
         let message = text(&assert.get_output().stderr);
         for part in

@@ -1,5 +1,6 @@
 //! `hugoniot`: from a case file to the shock Hugoniot u_s(u_p) of a porous solid, with uncertainty.
 
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -7,6 +8,11 @@ use sph_hugoniot::cli;
 
 fn main() -> ExitCode {
     let arguments = cli::Arguments::parse();
+    tracing_subscriber::fmt()
+        .with_env_filter(tracing_subscriber::EnvFilter::from_default_env())
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .init();
     match cli::execute(arguments) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {

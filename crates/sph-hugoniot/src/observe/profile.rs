@@ -245,7 +245,8 @@ pub(super) mod tests {
                 let position = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
                 let is_behind = position.x < front;
                 let density = if is_behind { densities.0 } else { densities.1 };
-                let mut p = Particle::at_rest((4 * column + row) as u64, position, density, 1.0, density);
+                let mut p =
+                    Particle::<Dim2>::at_rest((4 * column + row) as u64, position, density, 1.0, density);
                 p.velocity.x = if is_behind { piston } else { 0.0 } - inlet;
                 p.specific_internal_energy = if is_behind { 0.5 * piston * piston } else { 0.0 };
                 particles.push(p);

@@ -1,0 +1,28 @@
+//! One point of a Hugoniot from Rust, without files: a coarse porous copper at u_p = 300 m/s.
+//!
+//! `cargo run --release -p sph-hugoniot --example one_point`
+
+use sph_hugoniot::{config, microstructure, point};
+
+const CASE: &str = r#"Case(
+    name: "one point",
+    material: Library(name: "porous-copper"),
+    medium: (cell: "20 um", pores: CenteredSquare(), porosity: 1.35, particle_size: "2 um"),
+    window: (length: Cells(8)),
+    points: ["300 m/s"],
+    stop: (startup_cells: Cells(4), block_cells: 2, tolerance: 0.1, max_fed_cells: 12),
+)"#;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let case = config::parse(CASE, "one_point.rs")?;
+    let sample = microstructure::sample(&case.medium, case.material.reference_density);
+    println!("{} particles a cell, m = {:.4}", sample.particles.len(), sample.porosity);
+
+    let outcome = point::run(&case, &sample, case.points[0], &point::Unwatched);
+    println!("{}: u_s = {:.1} ± {:.1} m/s", outcome.status, outcome.shock_velocity, outcome.standard_error);
+    println!("from the mass of the plateau: {:.1} m/s", outcome.mass_balance_velocity);
+    if let Some(states) = outcome.states {
+        println!("Δσ = {:.3} GPa, σ_HEL = {:.3} GPa", states.stress_jump() / 1e9, -states.ahead.stress / 1e9);
+    }
+    Ok(())
+}

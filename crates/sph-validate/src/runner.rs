@@ -3,9 +3,8 @@
 //! A case gives the same bits whatever runs beside it.
 
 use std::collections::VecDeque;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use std::sync::{Mutex, PoisonError};
 
 use crate::case::Case;
 use crate::error::ValidateError;
@@ -20,15 +19,6 @@ pub struct Status {
     pub total: usize,
     /// Share of the estimated work that is done, 0 to 1.
     pub share: f64,
-    /// Time since the start [s].
-    pub elapsed: f64,
-}
-
-impl Status {
-    /// Estimated time left [s]; `None` at the very start.
-    pub fn time_left(&self) -> Option<f64> {
-        (self.share > 0.005).then(|| self.elapsed * (1.0 - self.share) / self.share)
-    }
 }
 
 /// Called from the threads of the runs: with the status, and with the case that has just ended.
@@ -57,7 +47,7 @@ pub fn run_all(
             });
         }
     });
-    let mut finished = finished.into_inner().unwrap_or_else(|poison| poison.into_inner());
+    let mut finished = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
     finished.sort_by_key(|&(k, _)| k);
     finished.into_iter().map(|(k, result)| (cases[k], result)).collect()
 }
@@ -72,7 +62,7 @@ fn run_one(case: Case, progress: impl Fn(f64) + Sync + Send) -> Result<Outcome, 
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(|poison| poison.into_inner())
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// How much of the estimated work is done.
@@ -81,7 +71,6 @@ struct Meter {
     /// Share of each case that is done, as bits of an `f64`.
     shares: Vec<AtomicU64>,
     done: AtomicU64,
-    started: Instant,
 }
 
 impl Meter {
@@ -90,7 +79,6 @@ impl Meter {
             work: cases.iter().map(|&case| suites::work(case)).collect(),
             shares: cases.iter().map(|_| AtomicU64::new(0)).collect(),
             done: AtomicU64::new(0),
-            started: Instant::now(),
         }
     }
 
@@ -111,7 +99,6 @@ impl Meter {
             done: self.done.load(Ordering::Relaxed) as usize,
             total: self.work.len(),
             share: done / self.work.iter().sum::<f64>(),
-            elapsed: self.started.elapsed().as_secs_f64(),
         }
     }
 }

@@ -46,3 +46,18 @@ fn sound_wave_converges() {
 fn shell_with_every_scheme() {
     gates_pass(SuiteName::Verny, &SchemeName::ALL, &[5]);
 }
+
+/// A run gives the same bits alone and beside another one.
+#[test]
+fn figures_do_not_depend_on_what_runs_beside() {
+    let case = |scheme| Case { suite: SuiteName::Riemann, scheme, n: 50 };
+    let cases = [case(SchemeName::Csph), case(SchemeName::TkcHancock)];
+    let bits = |threads| -> Vec<u64> {
+        let results = run_all(&cases, threads, &|_, _| ());
+        let order: Vec<Case> = results.iter().map(|(case, _)| *case).collect();
+        assert_eq!(order, cases, "results in the order of the cases");
+        let outcomes = results.into_iter().map(|(_, result)| result.expect("a result"));
+        outcomes.flat_map(|outcome| outcome.measurements).map(|m| m.value.to_bits()).collect()
+    };
+    assert_eq!(bits(1), bits(2));
+}

@@ -2,13 +2,12 @@
 //!
 //! Exit status: 0 when all gates passed, 2 for bad input, 3 for a numerical failure, 4 when a gate was missed.
 
-use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::sync::{Mutex, PoisonError};
 
 use clap::Parser;
+use sph_io::progress::{Mode, Progress};
 use sph_validate::case::{Case, SchemeName, SuiteName, Tier};
 use sph_validate::error::ValidateError;
 use sph_validate::gate::Significant;
@@ -61,11 +60,13 @@ fn validate(arguments: &Arguments) -> Result<u8, ValidateError> {
     cases.dedup();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.map_or(cores, usize::from);
-    eprintln!("{} runs of the {} tier on {threads} threads", cases.len(), arguments.tier.as_str());
-    let printer = Mutex::new(Printer::new());
+    let label = format!("validation, {} tier, {threads} threads", arguments.tier.as_str());
+    let progress = Mutex::new(Progress::new(1.0, label, Mode::Auto));
     let results = run_all(&cases, threads, &|status, ended| {
-        printer.lock().unwrap_or_else(|poison| poison.into_inner()).show(status, ended);
+        show(&mut progress.lock().unwrap_or_else(PoisonError::into_inner), status, ended);
     });
+    let progress = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
+    progress.finish(&format!("{} runs", cases.len()));
     let report = Report::new(command(arguments), arguments.tier, &results)?;
     write_files(&report, &results, &arguments.out)?;
     print_tables(&report);
@@ -121,43 +122,12 @@ fn print_tables(report: &Report) {
     }
 }
 
-/// Progress on the error stream: a line for every run that ends, and on a terminal a line that moves.
-struct Printer {
-    is_terminal: bool,
-    last: Instant,
-}
-
-impl Printer {
-    fn new() -> Self {
-        Self { is_terminal: std::io::stderr().is_terminal(), last: Instant::now() }
+/// Shows where the runs stand; a run that has ended is noted.
+fn show(progress: &mut Progress, status: Status, ended: Option<(Case, &Result<Outcome, ValidateError>)>) {
+    match ended {
+        Some((case, Ok(outcome))) => progress.note(&format!("{case}: {:.1} s", outcome.cost.seconds)),
+        Some((case, Err(error))) => progress.note(&format!("{case}: FAILED, {error}")),
+        None => {}
     }
-
-    fn show(&mut self, status: Status, ended: Option<(Case, &Result<Outcome, ValidateError>)>) {
-        let state = progress_line(status);
-        if let Some((case, result)) = ended {
-            let what = match result {
-                Ok(outcome) => format!("{:.1} s", outcome.cost.seconds),
-                Err(error) => format!("FAILED: {error}"),
-            };
-            self.clear();
-            eprintln!("{state} | {case}: {what}");
-        } else if self.is_terminal && self.last.elapsed() > Duration::from_millis(300) {
-            self.clear();
-            eprint!("{state}");
-            // A lost progress line is not worth an error.
-            let _ = std::io::stderr().flush();
-            self.last = Instant::now();
-        }
-    }
-
-    fn clear(&self) {
-        if self.is_terminal {
-            eprint!("\r\x1b[2K");
-        }
-    }
-}
-
-fn progress_line(status: Status) -> String {
-    let left = status.time_left().map_or("?".into(), |seconds| format!("{seconds:.0} s"));
-    format!("{:3}/{} runs, {:3.0} %, {left} left", status.done, status.total, 100.0 * status.share)
+    progress.update(status.share, &format!("{} of {} runs", status.done, status.total));
 }

@@ -126,3 +126,40 @@ fn shifts(profile: &[(f64, f64)], solution: &Solution) -> Vec<Measurement> {
     };
     names.into_iter().zip(solution.waves()).map(shift).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn particles_start_in_the_two_states() {
+        let material = material("aluminium-riemann").expect("in the library");
+        let problem = Problem::new(&material).expect("solvable");
+        let particles = particles(100, &problem);
+        assert_eq!(particles.len(), 6 * (100 + 2 * 5));
+        let frozen = particles.constraint.iter().filter(|&&c| c == Constraint::Frozen).count();
+        assert_eq!(frozen, 6 * 2 * 5);
+        for i in 0..particles.len() {
+            let stress = particles.deviator[0][i] - material.pressure(particles.density[i], 0.0);
+            let expected = if particles.position[0][i] < 0.0 { LEFT_STRESS } else { 0.0 };
+            assert!((stress - expected).abs() < 1.0, "{stress} Pa at {} m", particles.position[0][i]);
+            let is_frozen = particles.constraint[i] == Constraint::Frozen;
+            assert_eq!(
+                is_frozen,
+                particles.position[0][i].abs() > 0.5 * LENGTH,
+                "frozen outside of the domain"
+            );
+        }
+        let mass: f64 = particles.mass.iter().sum();
+        let area = 0.5 * (LENGTH + 10.0 * LENGTH / 100.0) * 6.0 * LENGTH / 100.0;
+        assert!((mass / (area * (problem.left.density + problem.right.density)) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn wave_that_the_profile_does_not_show_is_not_a_number() {
+        let material = material("aluminium-riemann").expect("in the library");
+        let problem = Problem::new(&material).expect("solvable");
+        let flat = [(-0.01, -1e9), (0.01, -1e9)];
+        assert!(shifts(&flat, &problem.solution).iter().all(|shift| shift.value.is_nan()));
+    }
+}

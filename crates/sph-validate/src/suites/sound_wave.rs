@@ -147,3 +147,31 @@ fn pulse(profile: &[(f64, f64)], reference: &Reference) -> [Measurement; 2] {
         },
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pulse_starts_in_the_middle_with_its_amplitude() {
+        let particles = particles(200, 8960.0);
+        assert_eq!(particles.len(), 6 * 200);
+        let mass: f64 = particles.mass.iter().sum();
+        assert!((mass / (8960.0 * LENGTH * 6.0 * LENGTH / 200.0) - 1.0).abs() < 1e-12);
+        let fastest = particles.velocity[0].iter().copied().fold(0.0, f64::max);
+        assert!((4.99..=5.0).contains(&fastest), "{fastest}");
+        let center =
+            centroid((0..particles.len()).map(|i| (particles.position[0][i], particles.velocity[0][i])));
+        assert!(center.abs() < 1e-12, "{center}");
+    }
+
+    /// The mesh has the sound speed of the material that the particles have.
+    #[test]
+    fn reference_and_library_agree_on_the_sound_speed() {
+        let copper = material("copper-sound-wave").expect("in the library");
+        let speed = copper.longitudinal_sound_speed(copper.reference_density, 0.0);
+        assert!((speed - SOUND_SPEED).abs() < 0.005, "{speed}");
+        let reference = Reference::get();
+        assert!((centroid(reference.right_pulse()) - TRAVEL).abs() < 2e-6);
+    }
+}

@@ -269,3 +269,47 @@ fn field(
         values: (0..particles.len()).map(value).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_have_the_mass_and_energy_of_the_shell() {
+        let particles = particles(10, 2785.0).expect("rings");
+        let mass: f64 = particles.mass.iter().sum();
+        let area = std::f64::consts::PI * (OUTER_RADIUS.powi(2) - INNER_RADIUS.powi(2));
+        assert!((mass / (2785.0 * area) - 1.0).abs() < 1e-12);
+        let square = |i: usize| particles.velocity[0][i].powi(2) + particles.velocity[1][i].powi(2);
+        let energy: f64 = (0..particles.len()).map(|i| 0.5 * particles.mass[i] * square(i)).sum();
+        // ½ ρ ∫ u² dA of u = -U0 R0/r.
+        let exact = std::f64::consts::PI * 2785.0 * (VELOCITY * INNER_RADIUS).powi(2) * 1.25f64.ln();
+        assert!((energy / exact - 1.0).abs() < 1e-4, "{energy} against {exact}");
+    }
+
+    /// An incompressible shell: r² falls by the same amount everywhere, and both readings give the inner radius.
+    #[test]
+    fn readings_of_an_incompressible_shell_are_its_inner_radius() {
+        let mut particles = particles(8, 2785.0).expect("rings");
+        let reader = Reader::new(&particles);
+        let start = reader.means(&particles);
+        let fall = INNER_RADIUS.powi(2) - 0.07f64.powi(2);
+        for i in 0..particles.len() {
+            let factor = (1.0 - fall / square_radius(&particles, i)).sqrt();
+            (0..2).for_each(|a| particles.position[a][i] *= factor);
+        }
+        let end = reader.means(&particles);
+        for k in 0..2 {
+            let radius = (INNER_RADIUS.powi(2) + end[k] - start[k]).sqrt();
+            assert!((radius - 0.07).abs() < 1e-12, "{radius}");
+        }
+        assert_eq!(reader.innermost, (std::f64::consts::TAU * 0.08125 / 0.0025).round() as u64);
+    }
+
+    #[test]
+    fn references_are_the_known_ones() {
+        let [formula, by_square, inner] = references().expect("in the library");
+        assert!((formula - 66.716).abs() < 5e-4, "{formula}");
+        assert!((by_square - 66.514).abs() < 1e-3 && (inner - 66.536).abs() < 1e-3, "{by_square} {inner}");
+    }
+}

@@ -16,7 +16,7 @@ use sph_materials::Material;
 
 use crate::dimension::SolidDimension;
 use crate::error::{SetupError, StepError};
-use crate::pass::{Pass, PassKind, Smoothing};
+use crate::pass::{CenteredPairs, Pass, PassKind, Smoothing, find_pairs};
 use crate::record::Row;
 use crate::scheme::{Scheme, Settings, SurfaceTreatment};
 use crate::stage_times::{StageTimes, StepStage};
@@ -53,7 +53,8 @@ struct Scratch {
     size: Vec<f64>,
     rule: Vec<f64>,
     delta: Vec<Vec<f64>>,
-    marked: Vec<bool>,
+    moved: Vec<bool>,
+    centered: Vec<CenteredPairs>,
     reports: Vec<TileReport>,
     steps: Vec<(f64, u32)>,
 }
@@ -188,7 +189,8 @@ impl<D: SolidDimension> Simulation<D> {
         s.size.extend(self.lists.halo.owner.iter().map(|&o| self.particles.size[o as usize]));
         s.delta.resize(D::COUNT, Vec::new());
         s.delta.iter_mut().for_each(|d| d.resize(records, 0.0));
-        s.marked.resize(padded / LANES, false);
+        s.moved.resize(records, false);
+        s.centered.resize(tiles, CenteredPairs::default());
         s.reports.resize(tiles, TileReport::default());
         s.steps.resize(tiles, (0.0, 0));
     }
@@ -278,7 +280,7 @@ impl<D: SolidDimension> Simulation<D> {
         }
         let s = &mut self.scratch;
         let pass = Pass {
-            kind: PassKind::Centering(self.settings.limiter, &s.delta, &s.marked),
+            kind: PassKind::Centering(self.settings.limiter, &s.delta, &s.centered),
             lists: &self.lists,
             smoothing: Smoothing::new(self.settings.kernel, self.settings.smoothing, D::COUNT, &s.size),
             surface: self.settings.surface,
@@ -289,34 +291,29 @@ impl<D: SolidDimension> Simulation<D> {
         pass.run(&mut [], &mut s.rows);
     }
 
-    /// δ of free particles at free surfaces, and the blocks that see one. False if there is none.
+    /// δ of free particles at free surfaces, and the pairs that see one. False if there is none.
     fn find_deltas(&mut self, time_step: f64) -> bool {
         let s = &mut self.scratch;
-        s.marked.iter_mut().for_each(|m| *m = false);
         let mut any = false;
         for i in 0..self.lists.n_particles {
             let rows = &s.rows[i / LANES * Row::count::<D>()..];
             let row = |r: usize| rows[r].0[i % LANES];
             let at_surface = row(Row::LEAST_EIGENVALUE) < CENTERING_EIGENVALUE;
-            if !at_surface || self.particles.constraint[i] != Constraint::Free {
-                s.delta.iter_mut().for_each(|d| d[i] = 0.0);
-                continue;
-            }
-            any = true;
+            s.moved[i] = at_surface && self.particles.constraint[i] == Constraint::Free;
+            any |= s.moved[i];
             for a in 0..D::COUNT {
                 let acceleration = row(Row::FORCE + a) * row(Row::INVERSE_DENSITY);
-                s.delta[a][i] = 0.5 * time_step * acceleration - row(Row::half_step::<D>() + a);
-            }
-            s.marked[i / LANES] = true;
-            for j in self.lists.neighbors(i) {
-                s.marked[self.lists.owner(j as usize) / LANES] = true;
+                let delta = 0.5 * time_step * acceleration - row(Row::half_step::<D>() + a);
+                s.delta[a][i] = if s.moved[i] { delta } else { 0.0 };
             }
         }
         let padded = self.lists.n_padded();
-        for delta in &mut s.delta {
-            for (h, &owner) in self.lists.halo.owner.iter().enumerate() {
-                delta[padded + h] = delta[owner as usize];
-            }
+        for (h, &owner) in self.lists.halo.owner.iter().enumerate() {
+            s.moved[padded + h] = s.moved[owner as usize];
+            s.delta.iter_mut().for_each(|delta| delta[padded + h] = delta[owner as usize]);
+        }
+        if any {
+            find_pairs(&self.lists, &s.moved, &mut s.centered);
         }
         any
     }

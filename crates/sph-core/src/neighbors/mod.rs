@@ -174,12 +174,15 @@ impl<D: Dimension> Search<'_, D> {
         let end = ((t + 1) * TILE).min(self.n_particles);
         let mut lists = TileLists { start: vec![0], ..Default::default() };
         let mut found: [Vec<u32>; LANES] = Default::default();
+        let mut beyond = Vec::new();
         let mut seen = vec![false; self.n_particles.div_ceil(TILE)];
         for block in (first..end).step_by(LANES) {
             for lane in 0..LANES {
                 found[lane].clear();
                 if block + lane < end {
-                    self.particle(block + lane, position, &mut found[lane]);
+                    beyond.clear();
+                    self.particle(block + lane, position, &mut found[lane], &mut beyond);
+                    found[lane].extend_from_slice(&beyond);
                     self.mark_seen(&mut found[lane], &mut seen);
                 }
             }
@@ -195,27 +198,33 @@ impl<D: Dimension> Search<'_, D> {
         lists
     }
 
-    /// Records near particle `i`, in the order of the cells.
-    fn particle(&self, i: usize, position: &D::AxisColumns, found: &mut Vec<u32>) {
+    /// Points near particle `i`, in the order of the cells: those within reach in `found`, those in the skin in `beyond`.
+    /// Pairs of the skin stand last, so that the slots of a block that no lane needs yet come together and are skipped.
+    fn particle(&self, i: usize, position: &D::AxisColumns, found: &mut Vec<u32>, beyond: &mut Vec<u32>) {
         let here = D::vector(|a| position[a][i]);
         let own = self.size[i];
         self.points.runs_near(here, self.farthest, |first, end| {
-            let n = found.len();
-            // Branch-free: every candidate is written, and counted if it is near.
-            found.resize(n + end - first, 0);
-            let mut kept = n;
+            let (mut near, mut far) = (found.len(), beyond.len());
+            // Branch-free: every candidate is written to both, and counted where it belongs.
+            found.resize(near + end - first, 0);
+            beyond.resize(far + end - first, 0);
             for p in first..end {
                 let mut r2 = 0.0;
                 for a in 0..D::COUNT {
                     let d = self.points.position[a][p] - here[a];
                     r2 += d * d;
                 }
-                let cut = self.reach.factor * (own + self.size_of[p]) + self.reach.skin;
+                let reach = self.reach.factor * (own + self.size_of[p]);
+                let cut = reach + self.reach.skin;
                 let j = self.points.index[p];
-                found[kept] = j;
-                kept += ((r2 < cut * cut) & (j as usize != i)) as usize;
+                let within = r2 < reach * reach;
+                found[near] = j;
+                beyond[far] = j;
+                near += (within & (j as usize != i)) as usize;
+                far += (!within & (r2 < cut * cut)) as usize;
             }
-            found.truncate(kept);
+            found.truncate(near);
+            beyond.truncate(far);
         });
     }
 

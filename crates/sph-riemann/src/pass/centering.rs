@@ -9,16 +9,87 @@
 //! p_i  += Σ w t*·½(δ_i + δ_j)                          antisymmetric in i, j: energy stays exact
 //! ```
 //!
-//! makes it neutral. Only blocks that see a particle with δ ≠ 0 are visited; their contacts are solved again.
+//! makes it neutral. Only pairs with δ ≠ 0 on a side count: a list of them is made in each step, tile by tile, and their
+//! contacts are solved again.
 
+use rayon::prelude::*;
 use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, LaneKernel, Lanes};
+use sph_core::neighbors::{NeighborLists, TILE};
 
 use super::contact::Left;
-use super::{Pass, Tile, own_indices};
+use super::{Pass, Tile};
 use crate::dimension::{SolidDimension, dot};
 use crate::limiter::Limiter;
 use crate::record::Row;
+
+/// Pairs of a tile with δ ≠ 0 on a side, in blocks of eight particles as neighbour lists have them.
+#[derive(Clone, Debug, Default)]
+pub struct CenteredPairs {
+    /// Particles of each block; the last one stands in for missing ones, without neighbours.
+    members: Vec<[u32; LANES]>,
+    /// First slot of each block, and the end of the last.
+    start: Vec<u32>,
+    slots: Vec<[u32; LANES]>,
+    /// Particles with neighbours in the list, those with δ ≠ 0 first, and where their neighbours stand in `found`.
+    own: Vec<(u32, u32, u32)>,
+    others: Vec<(u32, u32, u32)>,
+    found: Vec<u32>,
+}
+
+/// Finds the pairs with δ ≠ 0 on a side; `moved` tells it of each record. One entry of `pairs` a tile.
+pub fn find_pairs<D: SolidDimension>(lists: &NeighborLists<D>, moved: &[bool], pairs: &mut [CenteredPairs]) {
+    pairs.par_iter_mut().enumerate().for_each(|(t, pairs)| {
+        pairs.collect(lists, moved, t * TILE..((t + 1) * TILE).min(lists.n_particles));
+        pairs.pack();
+    });
+}
+
+impl CenteredPairs {
+    fn collect<D: SolidDimension>(
+        &mut self,
+        lists: &NeighborLists<D>,
+        moved: &[bool],
+        particles: std::ops::Range<usize>,
+    ) {
+        self.own.clear();
+        self.others.clear();
+        self.found.clear();
+        for i in particles {
+            let first = self.found.len() as u32;
+            let all = moved[i];
+            self.found.extend(lists.neighbors(i).filter(|&j| all || moved[j as usize]));
+            let end = self.found.len() as u32;
+            if end > first {
+                if all { &mut self.own } else { &mut self.others }.push((i as u32, first, end));
+            }
+        }
+    }
+
+    /// Blocks of eight from particles of like numbers of pairs.
+    fn pack(&mut self) {
+        self.members.clear();
+        self.slots.clear();
+        self.start.clear();
+        self.start.push(0);
+        let listed = || self.own.iter().chain(&self.others);
+        let count = self.own.len() + self.others.len();
+        for block in 0..count.div_ceil(LANES) {
+            let mut eight = [(0, 0, 0); LANES];
+            let mut of_block = listed().skip(block * LANES);
+            let last = of_block.clone().take(LANES).last().copied().unwrap_or_default();
+            eight.fill_with(|| of_block.next().copied().unwrap_or((last.0, 0, 0)));
+            let longest = eight.iter().map(|(_, first, end)| end - first).max().unwrap_or(0);
+            self.members.push(eight.map(|(i, _, _)| i));
+            for k in 0..longest {
+                self.slots.push(eight.map(|(i, first, end)| {
+                    if first + k < end { self.found[(first + k) as usize] } else { i }
+                }));
+            }
+            self.start.push(self.slots.len() as u32);
+        }
+    }
+}
 
 /// The pass over one tile.
 pub(super) struct CenteringTile<'a, 'b, D: SolidDimension> {
@@ -27,8 +98,13 @@ pub(super) struct CenteringTile<'a, 'b, D: SolidDimension> {
     pub limiter: Limiter,
     /// δ of each record, by axis [m/s].
     pub delta: &'a [Vec<f64>],
-    /// Blocks that see a particle with δ ≠ 0.
-    pub marked: &'a [bool],
+    pub pairs: &'a CenteredPairs,
+}
+
+/// Sums of a block.
+struct Sums<D: SolidDimension, L: Lanes> {
+    power: L,
+    gradient: D::Axes<D::Axes<L>>,
 }
 
 impl<D: SolidDimension> CenteringTile<'_, '_, D> {
@@ -42,21 +118,12 @@ impl<D: SolidDimension> CenteringTile<'_, '_, D> {
     }
 
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, block: usize, b: usize) {
-        let lists = self.pass.tile_lists(self.tile.index);
-        let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
-        let left = Left::<D, L, true>::load(self.pass, block);
-        let own = self.delta_of::<L>(&own_indices(block));
-        let first = b * Row::count::<D>();
+    fn sums<L: Lanes>(&self, members: &[u32; LANES], slots: &[[u32; LANES]]) -> Sums<D, L> {
+        let left = Left::<D, L, true>::load(self.pass, members);
+        let own = self.delta_of::<L>(members);
         let half = L::splat(0.5);
-        let mut power = L::load(&self.tile.rows[first + Row::POWER].0);
-        let mut gradient = D::Axes::<D::Axes<L>>::splat(own);
-        for a in 0..D::COUNT {
-            for b in 0..D::COUNT {
-                let at = first + Row::velocity_gradient::<D>() + a * D::COUNT + b;
-                gradient[a][b] = L::load(&self.tile.rows[at].0);
-            }
-        }
+        let mut power = L::zero();
+        let mut gradient = D::Axes::<D::Axes<L>>::splat(D::Axes::<L>::splat(L::zero()));
         for slot in slots {
             let Some(pair) = left.contact(self.pass, self.limiter, slot) else { continue };
             let other = self.delta_of::<L>(slot);
@@ -73,11 +140,22 @@ impl<D: SolidDimension> CenteringTile<'_, '_, D> {
                 }
             }
         }
-        power.store(&mut self.tile.rows[first + Row::POWER].0);
-        for a in 0..D::COUNT {
-            for b in 0..D::COUNT {
-                let at = first + Row::velocity_gradient::<D>() + a * D::COUNT + b;
-                gradient[a][b].store(&mut self.tile.rows[at].0);
+        Sums { power, gradient }
+    }
+
+    /// Adds the sums to the rows of each particle once.
+    #[inline(always)]
+    fn add<L: Lanes>(&mut self, members: &[u32; LANES], sums: &Sums<D, L>) {
+        let lanes = (0..LANES).filter(|&l| l == 0 || members[l] != members[l - 1]);
+        for l in lanes {
+            let k = members[l] as usize - self.tile.index * TILE;
+            let rows = &mut self.tile.rows[k / LANES * Row::count::<D>()..];
+            rows[Row::POWER].0[k % LANES] += sums.power.to_array()[l];
+            for a in 0..D::COUNT {
+                for b in 0..D::COUNT {
+                    let row = Row::velocity_gradient::<D>() + a * D::COUNT + b;
+                    rows[row].0[k % LANES] += sums.gradient[a][b].to_array()[l];
+                }
             }
         }
     }
@@ -86,11 +164,10 @@ impl<D: SolidDimension> CenteringTile<'_, '_, D> {
 impl<D: SolidDimension> LaneKernel for CenteringTile<'_, '_, D> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
-        let first_block = self.tile.index * sph_core::neighbors::TILE_BLOCKS;
-        for b in 0..self.tile.rows.len() / Row::count::<D>() {
-            if self.marked[first_block + b] {
-                self.block::<L>(first_block + b, b);
-            }
+        let pairs = self.pairs;
+        for (members, range) in pairs.members.iter().zip(pairs.start.windows(2)) {
+            let sums = self.sums::<L>(members, &pairs.slots[range[0] as usize..range[1] as usize]);
+            self.add(members, &sums);
         }
     }
 }

@@ -8,8 +8,13 @@
 //! R_ab     += w e_a (U* - U_i)_b                                                (paper eqs. (9), (20), raw)
 //! ```
 //!
-//! With the spectral cap each side exerts its own traction T_i = σ_i K_i e_R - c_i × e_R, the adjoint of its velocity
-//! gradient, while U* keeps the mean correction. Everything is antisymmetric in the exchange of i and j: momentum and
+//! With the spectral cap the traction is completed to the adjoint of the velocity gradient,
+//!
+//! ```text
+//! t* += (w_l σ_l - w_r σ_r)·½(K_i - K_j) e_R - (w_l c_i + w_r c_j) × e_R,   w_l = z_r/(z_l + z_r), w_r = z_l/(z_l + z_r)
+//! ```
+//!
+//! so that each side exerts σ K e - c × e of its own, while U* keeps the mean correction. Everything is antisymmetric in the exchange of i and j: momentum and
 //! total energy are conserved to round-off.
 
 use sph_core::dimension::Components;
@@ -53,7 +58,7 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
         let first_block = tile.index * sph_core::neighbors::TILE_BLOCKS;
         for (b, rows) in tile.rows.chunks_exact_mut(Row::count::<D>()).enumerate() {
             let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
-            let left = Left::<D, L, RECONSTRUCT>::load(pass, first_block + b);
+            let left = Left::<D, L, RECONSTRUCT>::load(pass, &own_indices(first_block + b));
             left.gather(pass, limiter, slots, rows);
         }
     }
@@ -71,14 +76,13 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         if RECONSTRUCT { D::SIDES_LINES } else { (Sides::correction::<D>() - 1) / LANES + 1 };
 
     #[inline(always)]
-    pub fn load(pass: &Pass<'_, D>, block: usize) -> Self {
-        let indices = own_indices(block);
+    pub fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
         let mut record = D::SidesRecord::<L>::splat(L::zero());
         for line in 0..Self::LINES {
-            // SAFETY: the particles of a block are below `n_padded`, and records reach to `n_records`.
-            unsafe { load_line(&mut record, pass.records, D::SIDES_LINES, line, &indices) };
+            // SAFETY: indices of particles are below `n_padded`, and records reach to `n_records`.
+            unsafe { load_line(&mut record, pass.records, D::SIDES_LINES, line, indices) };
         }
-        Self { record, size: pass.smoothing.own(&indices) }
+        Self { record, size: pass.smoothing.own(indices) }
     }
 
     /// Sums over the neighbours, into the rows of the block.
@@ -190,25 +194,30 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
         } else {
             (*self.e, *self.e)
         };
-        let mut mean_e = left_e;
+        let (mut mean_e, mut half_difference_e) = (left_e, left_e);
         for a in 0..D::COUNT {
             mean_e[a] = L::splat(0.5) * (left_e[a] + right_e[a]);
+            half_difference_e[a] = L::splat(0.5) * (left_e[a] - right_e[a]);
+        }
+        let mut jump = stress_r;
+        for k in 0..D::STRESS_COUNT {
+            jump[k] = stress_r[k] - stress_l[k];
         }
         let impedances = Impedances::<L>::of::<D>(self.left, self.right);
-        let mean_l = times::<D, L>(&stress_l, &mean_e);
-        let mean_r = times::<D, L>(&stress_r, &mean_e);
-        let change = impedances.change::<D>(&mean_l, &mean_r, &du, self.e);
+        let change = impedances.change::<D>(&times::<D, L>(&jump, &mean_e), &du, self.e);
         let mut velocity = du;
         for a in 0..D::COUNT {
             velocity[a] = phi_l[a] + change.total[a];
         }
-        if !matches!(pass.surface, SurfaceTreatment::SpectralCap { .. }) {
-            return (velocity, impedances.traction::<D>(&mean_l, &change, self.e));
+        let mut traction = impedances.traction::<D>(&times::<D, L>(&stress_l, &mean_e), &change, self.e);
+        if matches!(pass.surface, SurfaceTreatment::SpectralCap { .. }) {
+            let weights = impedances.weights();
+            let adjoint = self.adjoint(&stress_l, &stress_r, &half_difference_e, weights);
+            for a in 0..D::COUNT {
+                traction[a] += adjoint[a];
+            }
         }
-        let own_l = self.own_traction(&stress_l, &left_e, self.left);
-        let own_r = self.own_traction(&stress_r, &right_e, self.right);
-        let own_change = impedances.change::<D>(&own_l, &own_r, &du, self.e);
-        (velocity, impedances.traction::<D>(&own_l, &own_change, self.e))
+        (velocity, traction)
     }
 
     /// K e.
@@ -221,24 +230,31 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
         times::<D, L>(&k, e)
     }
 
-    /// T = σ K e - c × e.
+    /// (w_l σ_l - w_r σ_r)·½(K_l - K_r) e - (w_l c_l + w_r c_r) × e: what makes the traction the adjoint of the velocity
+    /// gradient, each side with its own correction.
     #[inline(always)]
-    fn own_traction(
+    fn adjoint(
         &self,
-        stress: &D::Symmetric<L>,
-        corrected_e: &D::Axes<L>,
-        record: &D::SidesRecord<L>,
+        stress_l: &D::Symmetric<L>,
+        stress_r: &D::Symmetric<L>,
+        half_difference_e: &D::Axes<L>,
+        [w_l, w_r]: [L; 2],
     ) -> D::Axes<L> {
+        let mut weighted = *stress_l;
+        for k in 0..D::STRESS_COUNT {
+            weighted[k] = w_l * stress_l[k] - w_r * stress_r[k];
+        }
         let mut torque = D::Spin::<L>::splat(L::zero());
         for c in 0..D::SPIN_COUNT {
-            torque[c] = record[Sides::torque::<D>() + c];
+            let at = Sides::torque::<D>() + c;
+            torque[c] = w_l * self.left[at] + w_r * self.right[at];
         }
         let turn = cross::<D, L>(&torque, self.e);
-        let mut traction = times::<D, L>(stress, corrected_e);
+        let mut adjoint = times::<D, L>(&weighted, half_difference_e);
         for a in 0..D::COUNT {
-            traction[a] = traction[a] - turn[a];
+            adjoint[a] = adjoint[a] - turn[a];
         }
-        traction
+        adjoint
     }
 
     /// Φ_l and Φ_r.
@@ -267,8 +283,9 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
                 along_l = self.left[first + a].mul_add(self.dx[a], along_l);
                 along_r = self.right[first + a].mul_add(self.dx[a], along_r);
             }
-            phi_l[f] += M::half(difference, along_l);
-            phi_r[f] = phi_r[f] - M::half(difference, along_r);
+            let (half_l, half_r) = M::half_of_both(difference, along_l, along_r);
+            phi_l[f] += half_l;
+            phi_r[f] = phi_r[f] - half_r;
         }
     }
 }
@@ -298,19 +315,15 @@ impl<L: Lanes> Impedances<L> {
         Self { left, right, inverse_sum: [sum[1] * inverse, sum[0] * inverse] }
     }
 
+    /// Weights of the left and the right traction in t*: z_r and z_l over their sum.
     #[inline(always)]
-    fn change<D: SolidDimension>(
-        &self,
-        left: &D::Axes<L>,
-        right: &D::Axes<L>,
-        du: &D::Axes<L>,
-        e: &D::Axes<L>,
-    ) -> Change<D, L> {
-        let mut dt = *du;
-        for a in 0..D::COUNT {
-            dt[a] = right[a] - left[a];
-        }
-        let (dt_r, du_r) = (dot::<D, L>(&dt, e), dot::<D, L>(du, e));
+    fn weights(&self) -> [L; 2] {
+        [self.right[0] * self.inverse_sum[0], self.left[0] * self.inverse_sum[0]]
+    }
+
+    #[inline(always)]
+    fn change<D: SolidDimension>(&self, dt: &D::Axes<L>, du: &D::Axes<L>, e: &D::Axes<L>) -> Change<D, L> {
+        let (dt_r, du_r) = (dot::<D, L>(dt, e), dot::<D, L>(du, e));
         let along = velocity_change(dt_r, du_r, self.right[0], self.inverse_sum[0]);
         let mut total = *du;
         for a in 0..D::COUNT {

@@ -17,6 +17,7 @@ use crate::dimension::SolidDimension;
 use crate::limiter::Limiter;
 use crate::record::Row;
 use crate::scheme::SurfaceTreatment;
+pub use centering::{CenteredPairs, find_pairs};
 pub use smoothing::Smoothing;
 
 /// A pass and all that it reads.
@@ -47,8 +48,8 @@ pub enum PassKind<'a> {
     Contact(Limiter),
     /// Contact of each pair without reconstruction and correction.
     PlainContact,
-    /// Corrects power and velocity gradients for the true acceleration, from δ by axis, in the marked blocks.
-    Centering(Limiter, &'a [Vec<f64>], &'a [bool]),
+    /// Corrects power and velocity gradients for the true acceleration, from δ by axis, over the listed pairs.
+    Centering(Limiter, &'a [Vec<f64>], &'a [CenteredPairs]),
 }
 
 /// What a pass writes in one tile.
@@ -90,8 +91,9 @@ impl<D: SolidDimension> Pass<'_, D> {
             PassKind::Contact(limiter) => {
                 dispatch_with(set, contact::ContactTile::<D, true> { pass: self, tile, limiter });
             }
-            PassKind::Centering(limiter, delta, marked) => {
-                dispatch_with(set, centering::CenteringTile { pass: self, tile, limiter, delta, marked });
+            PassKind::Centering(limiter, delta, pairs) => {
+                let pairs = &pairs[tile.index];
+                dispatch_with(set, centering::CenteringTile { pass: self, tile, limiter, delta, pairs });
             }
         }
     }

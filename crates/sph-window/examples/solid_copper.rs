@@ -3,6 +3,7 @@
 //! `cargo run --release --example solid_copper`
 
 use sph_core::{Components, Dim2, Domain, Particle, Particles, dimension::Dimension};
+use sph_materials::hugoniot::piston;
 use sph_riemann::{Scheme, Settings};
 use sph_window::{FeedSample, InletKind, Window, WindowError, WindowSettings};
 
@@ -23,20 +24,25 @@ fn sample(density: f64) -> Result<FeedSample<Dim2>, WindowError> {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let copper = sph_materials::library::material("porous-copper")?;
+    let particle_velocity = 200.0;
+    let exact = piston(&copper, particle_velocity)?.main_wave();
     let settings = WindowSettings {
         inlet: InletKind::ImpedanceMatched { wave_speed: None },
-        ..WindowSettings::new(200.0 * SIZE, 200.0)
+        ..WindowSettings::new(200.0 * SIZE, particle_velocity)
     };
     let sample = sample(copper.reference_density)?;
     let mut window = Window::new(sample, vec![copper], Settings::for_scheme(Scheme::TkcHancock), settings)?;
     while window.fed_length() < 2e-3 {
-        if let Some(boost) = window.step()?.boost {
-            println!("{:7.1} ns: boost by {boost:8.2} m/s", 1e9 * window.time());
+        let report = window.step()?;
+        if let Some(boost) = report.boost.filter(|boost| boost.abs() > 10.0) {
+            println!("{:6.1} ns: the frame is boosted by {boost:8.2} m/s", 1e9 * window.time());
         }
     }
     let shock = window.shock_velocity().ok_or("no block of the medium was swept")?;
-    println!("u_p = {:.1} m/s behind the precursor", window.effective_particle_velocity());
-    println!("u_s = {:.1} ± {:.1} m/s from the front", shock.velocity, shock.standard_error);
+    let deficit = window.feed_deficit();
+    println!("a piston of {particle_velocity:.1} m/s, precursor gone through the inlet");
+    println!("fed medium: u_s = {:.1} ± {:.1} m/s", shock.velocity, shock.standard_error);
+    println!("at rest:    {:.1} m/s, exact {:.1} m/s", shock.velocity + deficit, exact.wave_speed);
     println!("the ledger closes to {:.1e}", window.ledger_residual());
     Ok(())
 }

@@ -29,6 +29,9 @@
 //!
 //! Rublev & Murzov, arXiv 2410.14646, section 3, with frame tracking in place of the search by bisection.
 
+// Units in brackets, such as [Pa], read as links to rustdoc.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 pub mod error;
 pub mod feed;
 pub mod frame;

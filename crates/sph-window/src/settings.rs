@@ -210,4 +210,17 @@ mod tests {
         let inlet = InletKind::ImpedanceMatched { wave_speed: Some(-2.0) };
         assert!(fault(WindowSettings { inlet, ..good }).starts_with("inlet.wave_speed = -2 m/s"));
     }
+
+    #[test]
+    fn what_is_not_given_has_its_default() {
+        let read = |text: &str| ron::from_str::<WindowSettings>(text);
+        assert_eq!(read("(length: 2e-4, particle_velocity: 100)").unwrap(), WindowSettings::new(2e-4, 100.0));
+        let settings = WindowSettings {
+            inlet: InletKind::ImpedanceMatched { wave_speed: Some(2100.0) },
+            search: Search::FixedFrame,
+            ..WindowSettings::new(1e-3, 250.0)
+        };
+        assert_eq!(read(&ron::to_string(&settings).unwrap()).unwrap(), settings);
+        assert!(read("(length: 2e-4, particle_velocity: 100, frontplace: 0.5)").is_err());
+    }
 }

@@ -1,8 +1,9 @@
 //! The shock velocity, from the way of the front through the medium.
 //!
 //! Let \\( x_f \\) be the place of the front in the box and \\( X_{fed} \\) the length of the medium that has come in.
-//! Their sum, the *swept length* \\( X = X_{fed} + x_f = \int (u_b + v_f)\, dt \\), is the place of the front relative to
-//! the medium ahead of it. It does not know the frame, and boosts leave it continuous: \\( u_s = dX/dt \\), whatever the
+//! Lengths of the medium are those of the medium as it is fed, of density \\( \rho_{00} \\): in a steady state
+//! \\( \rho_{00} u_s \\) is the mass flux through the front. Their sum, the *swept length* \\( X = X_{fed} + x_f = \int (u_b + v_f)\, dt \\), is the place of the front relative to
+//! that medium. It does not know the frame, and boosts leave it continuous: \\( u_s = dX/dt \\), whatever the
 //! frame.
 //!
 //! The history keeps the times at which X first passes whole multiples of a block length, itself a whole number of

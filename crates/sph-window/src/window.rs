@@ -27,8 +27,10 @@ use sph_riemann::{Settings, Simulation, SolidDimension, StepReport};
 
 /// Length of the layer inside of the inlet whose stress an impedance-matched inlet reads, at least [D].
 const INLET_LAYER: f64 = 8.0;
+/// Distance of that layer from the inlet, at least [D]: a solid takes up its stress on about five particle sizes.
+const INLET_GAP: f64 = 8.0;
 /// Swept length, in lengths of the box, after which a front that is not at its place never will be.
-const APPROACH_LIMIT: f64 = 50.0;
+const APPROACH_LIMIT: f64 = 20.0;
 
 /// What one step did.
 #[derive(Clone, Debug)]
@@ -63,6 +65,7 @@ impl<D: SolidDimension> Window<D> {
         settings: WindowSettings,
     ) -> Result<Self, WindowError> {
         settings.validate(sample.particle_size())?;
+        check_layer(&sample, &settings)?;
         let regions = settings.regions_for(sample.particle_size());
         let frame = Frame::new(settings.particle_velocity, settings.start_velocity());
         let mut feed = Feed::new(sample);
@@ -159,13 +162,8 @@ impl<D: SolidDimension> Window<D> {
     /// Reads the stress that arrives at an impedance-matched inlet.
     fn read_inlet(&mut self) {
         let InletKind::ImpedanceMatched { wave_speed } = self.settings.inlet else { return };
-        let (simulation, sample) = (&self.simulation, self.feed.sample());
-        let place = LayerPlace {
-            end: self.regions.inlet_start,
-            length: sample.whole_periods(INLET_LAYER * sample.particle_size()),
-            cross_section: sample.cross_section(),
-            medium_density: sample.mean_density(),
-        };
+        let simulation = &self.simulation;
+        let place = layer_place(self.feed.sample(), &self.regions);
         let matter = |i| (simulation.stress(i)[0], simulation.longitudinal_sound_speed(i));
         let layer = Layer::measure(simulation.particles(), matter, place, wave_speed);
         self.progress.inlet.update(&layer, self.progress.time - self.progress.exchanged);
@@ -186,7 +184,7 @@ impl<D: SolidDimension> Window<D> {
     fn observe(&mut self) -> Result<Observation, WindowError> {
         let time = self.progress.time;
         let profile = self.velocity_profile();
-        let level = -0.5 * (self.inlet_velocity() + self.progress.frame.outlet_velocity());
+        let level = -0.5 * (self.ahead_velocity() + self.progress.frame.outlet_velocity());
         let front = match profile.rightmost_crossing(level) {
             Some(front) => front,
             // Before the front has left the piston, the mean over a period may not show it yet.
@@ -250,6 +248,32 @@ impl<D: SolidDimension> Window<D> {
         self.simulation.boost(D::vector(|axis| if axis == 0 { velocity } else { 0.0 }));
         self.progress.frame.boost(velocity);
     }
+}
+
+/// The layer whose stress an impedance-matched inlet reads.
+fn layer_place<D: Dimension>(sample: &FeedSample<D>, regions: &Regions) -> LayerPlace {
+    LayerPlace {
+        end: regions.inlet_start - sample.whole_periods(INLET_GAP * sample.particle_size()),
+        length: sample.whole_periods(INLET_LAYER * sample.particle_size()),
+        cross_section: sample.cross_section(),
+        medium_density: sample.mean_density(),
+    }
+}
+
+/// The front must stand left of the layer that a matched inlet reads.
+fn check_layer<D: Dimension>(sample: &FeedSample<D>, settings: &WindowSettings) -> Result<(), WindowError> {
+    let place = layer_place(sample, &settings.regions_for(sample.particle_size()));
+    let matched = matches!(settings.inlet, InletKind::ImpedanceMatched { .. });
+    if matched && settings.wanted_front() > place.end - place.length {
+        return Err(WindowError::Setting {
+            field: "front_place",
+            value: settings.front_place,
+            unit: "",
+            reason: "must leave two layers between the front and an impedance-matched inlet, each of whole periods of the \
+                     medium and at least eight particle sizes long",
+        });
+    }
+    Ok(())
 }
 
 /// The box: periodic across, open along x.

@@ -60,7 +60,8 @@ fn a_restored_window_makes_the_same_steps() {
     let settings = settings(60.0 * SIZE);
     let mut straight = window(sample(), settings);
     (0..500).for_each(|_| assert!(straight.step().is_ok()));
-    let saved = straight.save();
+    let written = ron::to_string(&straight.save()).unwrap();
+    let saved = ron::from_str(&written).unwrap();
     let particles = straight.simulation().particles().clone();
     let mut resumed =
         Window::restore(sample(), vec![copper()], solver(), settings, saved, particles).unwrap();

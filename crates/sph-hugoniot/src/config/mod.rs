@@ -6,8 +6,11 @@
 
 pub mod case;
 pub mod fault;
+pub mod field;
+pub mod node;
 pub mod resolve;
 mod resolve_material;
+mod resolve_scheme;
 pub mod schema;
 pub mod syntax;
 pub mod tree;
@@ -47,9 +50,9 @@ pub fn load(path: &Path) -> Result<Case, CaseError> {
 pub fn parse(text: &str, path: &str) -> Result<Case, CaseError> {
     let faults = fault::Faults::default();
     let root = syntax::parse(text, &faults);
-    let case = root.as_ref().and_then(|node| {
-        let schema: schema::CaseSchema = tree::read(node, &faults)?;
-        resolve::resolve(&schema, &node.span, &faults)
+    let case = root.as_ref().and_then(|tree| {
+        let schema: schema::CaseSchema = tree::read(tree, &faults)?;
+        resolve::resolve(&schema, &tree.span, &faults)
     });
     match case {
         Some(case) if faults.is_empty() => Ok(case),
@@ -60,11 +63,11 @@ pub fn parse(text: &str, path: &str) -> Result<Case, CaseError> {
 }
 
 /// Adds to each fault the path of the field that it stands at.
-fn with_paths(faults: fault::Faults, root: Option<&syntax::Node>) -> Vec<Fault> {
+fn with_paths(faults: fault::Faults, root: Option<&node::Node>) -> Vec<Fault> {
     let mut list = faults.into_sorted();
     list.retain(|f| !f.message.is_empty());
     for fault in &mut list {
-        fault.field = root.map_or(String::new(), |node| syntax::path_to(node, &fault.span));
+        fault.field = root.map_or(String::new(), |tree| node::path_to(tree, &fault.span));
     }
     list
 }

@@ -4,9 +4,9 @@ use sph_materials::eos::MieGruneisen;
 use sph_materials::{EquationOfState, Failure, Material, SoundSpeedModel, Strength, library};
 
 use super::fault::{Fault, Span, name_hint};
+use super::field::Field;
 use super::resolve::Resolver;
 use super::schema::{LibrarySchema, MaterialSchema, SolidSchema};
-use super::tree::Field;
 
 /// Least and greatest modulus or strength that is accepted [Pa].
 const STRENGTH: (f64, f64) = (1.0, 1e13);

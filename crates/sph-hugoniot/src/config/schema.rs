@@ -7,7 +7,7 @@ use sph_core::kernel::KernelFamily;
 use sph_materials::SoundSpeedModel;
 use sph_riemann::{Limiter, Scheme};
 
-use super::tree::Field;
+use super::field::Field;
 use super::units::{Count, Density, Length, Number, Pressure, Velocity};
 
 /// The whole file.

@@ -2,7 +2,7 @@
 //!
 //! A serde deserializer over [`Node`]. It knows what serde's derived code knows (names of fields and variants) and the
 //! place of every value, so it can name the nearest field for a misspelt one, and it goes on after a fault: a field
-//! of type [`Field`] that cannot be read becomes [`Field::Bad`] after its fault was noted, and the others are read.
+//! of type [`Field`](super::field::Field) that cannot be read becomes `Bad` after its fault was noted, and the others are read.
 
 use std::fmt;
 
@@ -10,77 +10,8 @@ use serde::Deserialize;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 
 use super::fault::{Fault, Faults, Span, backticked, name_hint};
-use super::syntax::{Entry, Node, Value};
-
-/// Name by which [`Field`] makes itself known to the deserializer.
-const FIELD: &str = "$sph_hugoniot::Field";
-
-/// A field of the case file: absent, refused (the fault is noted), or read, with its place.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Field<T> {
-    /// Not in the file.
-    #[default]
-    Absent,
-    /// In the file, but refused; the fault is noted.
-    Bad(Span),
-    /// Read.
-    Good(T, Span),
-}
-
-impl<T> Field<T> {
-    /// The value, if it was read.
-    pub fn get(&self) -> Option<&T> {
-        match self {
-            Field::Good(value, _) => Some(value),
-            _ => None,
-        }
-    }
-
-    /// Place in the text, if it is there.
-    pub fn span(&self) -> Option<Span> {
-        match self {
-            Field::Absent => None,
-            Field::Bad(span) | Field::Good(_, span) => Some(span.clone()),
-        }
-    }
-
-    /// The value; an absent field is a fault at the place of its group.
-    pub fn required(&self, name: &str, group: &Span, faults: &Faults) -> Option<&T> {
-        if matches!(self, Field::Absent) {
-            let end = group.end.saturating_sub(1).max(group.start)..group.end;
-            faults.push(
-                Fault::new(end, format!("the field `{name}` is missing"))
-                    .hint(format!("add `{name}: …` here")),
-            );
-        }
-        self.get()
-    }
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Field<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_newtype_struct(FIELD, FieldVisitor(std::marker::PhantomData))
-    }
-}
-
-struct FieldVisitor<T>(std::marker::PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for FieldVisitor<T> {
-    type Value = Field<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a field")
-    }
-
-    fn visit_seq<A: de::SeqAccess<'de>>(self, mut access: A) -> Result<Field<T>, A::Error> {
-        let mut bound = || access.next_element::<u64>().map(|b| b.unwrap_or(0) as usize);
-        let span = bound()?..bound()?;
-        Ok(match access.next_element::<T>()? {
-            Some(value) => Field::Good(value, span),
-            None => Field::Bad(span),
-        })
-    }
-}
+use super::field::FIELD;
+use super::node::{Entry, Node, Value};
 
 /// Why a value was refused. `hint` follows the message after `; hint: ` when it passes through serde.
 #[derive(Debug)]
@@ -263,7 +194,7 @@ impl<'de> Deserializer<'de> for Tree<'_> {
     }
 }
 
-/// Start, end and value of a [`Field`].
+/// Start, end and value of a [`Field`](super::field::Field).
 struct FieldParts<'t> {
     tree: Tree<'t>,
     next: usize,
@@ -380,6 +311,7 @@ impl<'de> de::VariantAccess<'de> for Choice<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::field::Field;
     use super::super::syntax;
     use super::*;
 

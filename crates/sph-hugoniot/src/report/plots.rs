@@ -10,6 +10,8 @@ use crate::microstructure::Sample;
 use crate::outcome::PointOutcome;
 use crate::reference;
 
+/// Longest strip of a field image, in heights of the cell.
+const LONGEST_STRIP: f64 = 16.0;
 /// Microns in a meter.
 const MICRO: f64 = 1e6;
 /// Pascals in a gigapascal.
@@ -128,4 +130,5 @@ pub fn fields(outcome: &PointOutcome) -> FieldImage {
         .with_field(Field::new("σ_{xx} [GPa]", scaled(&fields.stress, 1.0 / GIGA), ColorMap::Diverging))
         .with_field(Field::new("u_x [m/s]", fields.velocity.clone(), ColorMap::Heat))
         .with_periods(2)
+        .with_strips((length / height / LONGEST_STRIP).ceil().max(1.0) as usize)
 }

@@ -4,7 +4,77 @@ use sph_io::table::{Column, Table};
 
 use crate::config::Case;
 use crate::microstructure::Sample;
+use crate::observe::{Bin, MeanState};
 use crate::outcome::PointOutcome;
+
+/// A column of numbers: name, unit, description, and how a row gives its value.
+type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
+
+/// What is measured of a point.
+const MEASURED: [Number<PointOutcome>; 13] = [
+    ("u_p", "m/s", "particle velocity behind the front, imposed", |o| o.particle_velocity),
+    ("u_s", "m/s", "shock velocity relative to the medium ahead, from the front's way", |o| o.shock_velocity),
+    ("u_s_error", "m/s", "standard error of u_s over whole cells, batch means", |o| o.standard_error),
+    ("u_s_mass", "m/s", "shock velocity from the mass of the plateau", |o| o.mass_balance_velocity),
+    ("stress_jump", "Pa", "rise of -sigma_xx across the compaction wave", |o| {
+        o.states.map_or(f64::NAN, |s| s.stress_jump())
+    }),
+    ("sigma_hel", "Pa", "-sigma_xx between precursor and compaction wave", |o| {
+        o.states.map_or(f64::NAN, |s| -s.ahead.stress)
+    }),
+    ("rho_packing", "kg/m3", "density behind: mass per volume of space", |o| {
+        behind(o, |s| s.packing_density)
+    }),
+    ("rho_own", "kg/m3", "density behind: as the particles carry it", |o| behind(o, |s| s.own_density)),
+    ("packing_over_own", "", "rho_packing / rho_own: below 1 with open pores", |o| {
+        behind(o, |s| s.packing_density / s.own_density)
+    }),
+    ("residual_mass", "", "miss of the jump condition of mass", |o| o.residuals.map_or(f64::NAN, |r| r.mass)),
+    ("residual_momentum", "", "miss of the jump condition of momentum", |o| {
+        o.residuals.map_or(f64::NAN, |r| r.momentum)
+    }),
+    ("residual_energy", "", "miss of the jump condition of energy", |o| {
+        o.residuals.map_or(f64::NAN, |r| r.energy)
+    }),
+    ("u_p_effective", "m/s", "u_p that the ends of the window imposed", |o| o.effective_particle_velocity),
+];
+
+/// What a point cost, and how well its books close.
+const SPENT: [Number<PointOutcome>; 4] = [
+    ("fed_cells", "", "cells of the medium fed", |o| o.fed_cells),
+    ("particle_steps_per_second", "1/s", "particles advanced in a second", |o| o.particle_steps_per_second()),
+    ("ledger_residual", "", "gap of the ledger of mass, momentum and energy", |o| o.ledger_residual),
+    ("wall_time", "s", "time that the point took", |o| o.wall_seconds),
+];
+
+/// Columns of the averaged profile.
+const PROFILE: [Number<Bin>; 8] = [
+    ("xi", "m", "distance from the front, positive ahead", |b| b.place),
+    ("rho_packing", "kg/m3", "mass per volume of space", |b| b.packing_density),
+    ("rho_own", "kg/m3", "density as the particles carry it", |b| b.own_density),
+    ("sigma_xx", "Pa", "longitudinal stress over space, positive in tension", |b| b.stress),
+    ("pressure", "Pa", "pressure over space", |b| b.pressure),
+    ("u_x", "m/s", "velocity relative to the undisturbed medium", |b| b.velocity),
+    ("e", "J/kg", "specific internal energy", |b| b.internal_energy),
+    ("k", "J/kg", "kinetic energy of the motion relative to the mean", |b| b.fluctuation_energy),
+];
+
+/// Columns of the front's way: time, swept length, u_s of each cell.
+const HISTORY: [Number<(f64, f64, f64)>; 3] = [
+    ("time", "s", "when the front left the cell", |c| c.0),
+    ("swept", "m", "length of the medium that the front has swept", |c| c.1),
+    ("u_s", "m/s", "shock velocity over the cell", |c| c.2),
+];
+
+fn behind(outcome: &PointOutcome, value: fn(&MeanState) -> f64) -> f64 {
+    outcome.states.map_or(f64::NAN, |s| value(&s.behind))
+}
+
+fn add<Row>(table: Table, columns: &[Number<Row>], rows: &[&Row]) -> Table {
+    columns.iter().fold(table, |table, (name, unit, text, value)| {
+        table.with(Column::float(name, unit, text, rows.iter().map(|r| value(r)).collect::<Vec<_>>()))
+    })
+}
 
 /// The table of all points: one row each, in the order of u_p.
 pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Table {
@@ -12,103 +82,26 @@ pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Tab
         "Shock Hugoniot of {}: {}, porosity {:.5}, D = {:e} m",
         case.name, case.material.name, sample.porosity, case.medium.particle_size
     );
-    let float = |name: &str, unit: &str, text: &str, value: &dyn Fn(&PointOutcome) -> f64| {
-        Column::float(name, unit, text, outcomes.iter().map(|o| value(o)).collect::<Vec<_>>())
+    let whole = |name: &str, text: &str, value: fn(&PointOutcome) -> i64| {
+        Column::integer(name, "", text, outcomes.iter().map(|o| value(o)).collect::<Vec<_>>())
     };
-    let whole = |name: &str, text: &str, value: &dyn Fn(&PointOutcome) -> u64| {
-        Column::integer(name, "", text, outcomes.iter().map(|o| value(o) as i64).collect::<Vec<_>>())
-    };
-    let behind = |o: &PointOutcome, f: fn(&crate::observe::MeanState) -> f64| {
-        o.states.map_or(f64::NAN, |s| f(&s.behind))
-    };
-    let ahead = |o: &PointOutcome, f: fn(&crate::observe::MeanState) -> f64| {
-        o.states.map_or(f64::NAN, |s| f(&s.ahead))
-    };
-    Table::new(title)
-        .with(float("u_p", "m/s", "particle velocity behind the front, imposed", &|o| o.particle_velocity))
-        .with(float(
-            "u_s",
-            "m/s",
-            "shock velocity relative to the medium ahead, from the front's way",
-            &|o| o.shock_velocity,
-        ))
-        .with(float("u_s_error", "m/s", "standard error of u_s over whole cells, batch means", &|o| {
-            o.standard_error
-        }))
-        .with(float("u_s_mass", "m/s", "shock velocity from the mass of the plateau", &|o| {
-            o.mass_balance_velocity
-        }))
-        .with(float("stress_jump", "Pa", "rise of -sigma_xx across the compaction wave", &|o| {
-            o.states.map_or(f64::NAN, |s| s.stress_jump())
-        }))
-        .with(float("sigma_hel", "Pa", "-sigma_xx between precursor and compaction wave", &|o| {
-            ahead(o, |s| -s.stress)
-        }))
-        .with(float("rho_packing", "kg/m3", "density behind: mass per volume of space", &|o| {
-            behind(o, |s| s.packing_density)
-        }))
-        .with(float("rho_own", "kg/m3", "density behind: as the particles carry it", &|o| {
-            behind(o, |s| s.own_density)
-        }))
-        .with(float("packing_over_own", "", "rho_packing / rho_own: below 1 with open pores", &|o| {
-            behind(o, |s| s.packing_density / s.own_density)
-        }))
-        .with(float("residual_mass", "", "miss of the jump condition of mass", &|o| {
-            o.residuals.map_or(f64::NAN, |r| r.mass)
-        }))
-        .with(float("residual_momentum", "", "miss of the jump condition of momentum", &|o| {
-            o.residuals.map_or(f64::NAN, |r| r.momentum)
-        }))
-        .with(float("residual_energy", "", "miss of the jump condition of energy", &|o| {
-            o.residuals.map_or(f64::NAN, |r| r.energy)
-        }))
-        .with(float("u_p_effective", "m/s", "u_p that the ends of the window imposed", &|o| {
-            o.effective_particle_velocity
-        }))
-        .with(float("fed_cells", "", "cells of the medium fed", &|o| o.fed_cells))
-        .with(whole("averaged_cells", "cells that u_s is averaged over", &|o| o.averaged_cells as u64))
-        .with(whole("steps", "steps made", &|o| o.steps))
-        .with(whole("particles", "particles in the window at the end", &|o| o.particles as u64))
-        .with(float("particle_steps_per_second", "1/s", "particles advanced in a second", &|o| {
-            o.particle_steps_per_second()
-        }))
-        .with(float("ledger_residual", "", "gap of the ledger of mass, momentum and energy", &|o| {
-            o.ledger_residual
-        }))
-        .with(float("wall_time", "s", "time that the point took", &|o| o.wall_seconds))
-        .with(Column::text(
-            "status",
-            "how the point ended",
-            outcomes.iter().map(|o| o.status.to_string()).collect::<Vec<_>>(),
-        ))
+    let status: Vec<String> = outcomes.iter().map(|o| o.status.to_string()).collect();
+    let table = add(Table::new(title), &MEASURED, outcomes)
+        .with(whole("averaged_cells", "cells that u_s is averaged over", |o| o.averaged_cells as i64))
+        .with(whole("steps", "steps made", |o| o.steps as i64))
+        .with(whole("particles", "particles in the window at the end", |o| o.particles as i64));
+    add(table, &SPENT, outcomes).with(Column::text("status", "how the point ended", status))
 }
 
 /// The averaged profile of a point.
 pub fn profile(outcome: &PointOutcome) -> Table {
-    let float = |name: &str, unit: &str, text: &str, value: &dyn Fn(&crate::observe::Bin) -> f64| {
-        Column::float(name, unit, text, outcome.profile.iter().map(value).collect::<Vec<_>>())
-    };
-    Table::new(format!(
-        "Averaged profile at u_p = {} m/s in the frame of the front",
-        outcome.particle_velocity
-    ))
-    .with(float("xi", "m", "distance from the front, positive ahead", &|b| b.place))
-    .with(float("rho_packing", "kg/m3", "mass per volume of space", &|b| b.packing_density))
-    .with(float("rho_own", "kg/m3", "density as the particles carry it", &|b| b.own_density))
-    .with(float("sigma_xx", "Pa", "longitudinal stress over space, positive in tension", &|b| b.stress))
-    .with(float("pressure", "Pa", "pressure over space", &|b| b.pressure))
-    .with(float("u_x", "m/s", "velocity relative to the undisturbed medium", &|b| b.velocity))
-    .with(float("e", "J/kg", "specific internal energy", &|b| b.internal_energy))
-    .with(float("k", "J/kg", "kinetic energy of the motion relative to the mean", &|b| b.fluctuation_energy))
+    let title =
+        format!("Averaged profile at u_p = {} m/s in the frame of the front", outcome.particle_velocity);
+    add(Table::new(title), &PROFILE, &outcome.profile.iter().collect::<Vec<_>>())
 }
 
 /// u_s over each cell that the front of a point swept.
 pub fn history(outcome: &PointOutcome) -> Table {
-    let float = |name: &str, unit: &str, text: &str, value: &dyn Fn(&(f64, f64, f64)) -> f64| {
-        Column::float(name, unit, text, outcome.cell_velocities.iter().map(value).collect::<Vec<_>>())
-    };
-    Table::new(format!("Way of the front at u_p = {} m/s, cell by cell", outcome.particle_velocity))
-        .with(float("time", "s", "when the front left the cell", &|c| c.0))
-        .with(float("swept", "m", "length of the medium that the front has swept", &|c| c.1))
-        .with(float("u_s", "m/s", "shock velocity over the cell", &|c| c.2))
+    let title = format!("Way of the front at u_p = {} m/s, cell by cell", outcome.particle_velocity);
+    add(Table::new(title), &HISTORY, &outcome.cell_velocities.iter().collect::<Vec<_>>())
 }

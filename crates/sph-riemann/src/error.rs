@@ -46,6 +46,14 @@ pub enum SetupError {
         /// Period [m].
         period: f64,
     },
+    /// Saved list positions that do not fit the particles.
+    #[error("saved list positions have lengths {lengths:?}, but there are {count} particles")]
+    ListPositions {
+        /// Number of positions, by axis.
+        lengths: Vec<usize>,
+        /// Number of particles.
+        count: usize,
+    },
 }
 
 /// Where in a step something was found.

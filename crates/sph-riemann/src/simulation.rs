@@ -18,6 +18,7 @@ use crate::dimension::SolidDimension;
 use crate::error::{SetupError, StepError};
 use crate::pass::{CenteredPairs, Pass, PassKind, Smoothing, find_pairs};
 use crate::record::Row;
+use crate::restart::Clock;
 use crate::scheme::{Scheme, Settings, SurfaceTreatment};
 use crate::stage_times::{StageTimes, StepStage};
 use crate::time_step::{TimeStepReason, courant_step, signal_speed};
@@ -163,19 +164,25 @@ impl<D: SolidDimension> Simulation<D> {
 
     /// Sorts the particles in cell order and finds their neighbours.
     fn rebuild_lists(&mut self) {
+        let reach = self.reach();
         let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
-        let reach = Reach {
-            factor: self.settings.kernel.support() * self.settings.smoothing,
-            skin: self.settings.skin * largest,
-        };
         sort_particles(&mut self.particles, &self.domain, 2.0 * reach.factor * largest + reach.skin);
-        self.find_neighbors(reach);
+        let positions = self.particles.position.clone();
+        self.find_neighbors(&positions);
         self.stage_times.rebuilds += 1;
     }
 
-    fn find_neighbors(&mut self, reach: Reach) {
-        self.lists =
-            NeighborLists::build(&self.particles.position, &self.particles.size, &self.domain, reach);
+    fn reach(&self) -> Reach {
+        let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
+        Reach {
+            factor: self.settings.kernel.support() * self.settings.smoothing,
+            skin: self.settings.skin * largest,
+        }
+    }
+
+    /// Lists for the particles at the given positions, and scratch of their size.
+    pub(crate) fn find_neighbors(&mut self, positions: &D::AxisColumns) {
+        self.lists = NeighborLists::build(positions, &self.particles.size, &self.domain, self.reach());
         self.lists_valid = true;
         let (records, padded) = (self.lists.n_records(), self.lists.n_padded());
         let tiles = self.lists.n_particles.div_ceil(TILE);
@@ -362,6 +369,18 @@ impl<D: SolidDimension> Simulation<D> {
     /// True when the next step will rebuild the neighbour lists: the moment to insert and remove particles.
     pub fn lists_stale(&self) -> bool {
         !self.lists_valid || self.lists.outlived(&self.particles.position)
+    }
+
+    /// True if there are lists and no particle was inserted or removed since they were built.
+    pub(crate) fn lists_hold(&self) -> bool {
+        self.lists_valid
+    }
+
+    pub(crate) fn set_clock(&mut self, clock: Clock) {
+        self.time = clock.time;
+        self.step_count = clock.step_count;
+        self.particle_steps = clock.particle_steps;
+        self.relaxation_work = clock.relaxation_work;
     }
 
     /// Time [s].

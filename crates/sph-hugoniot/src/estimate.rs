@@ -57,23 +57,38 @@ pub fn shock_velocity(case: &Case, porosity: f64, particle_velocity: f64) -> f64
 pub fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> PointEstimate {
     let u_s = shock_velocity(case, sample.porosity, particle_velocity);
     let window_cells = case.window.cells_at(particle_velocity);
-    let fed_cells = case.stop.least_fed_cells(window_cells);
     // Behind the front the particles stand closer, by up to m; half of the window on average.
     let packed = 0.5 * (1.0 + sample.porosity);
     let particles = (window_cells as f64 * sample.particles.len() as f64 * packed).round();
     let sound_speed = case.material.longitudinal_sound_speed(sample.density, 0.0);
     let step = case.scheme.courant * case.medium.particle_size / (sound_speed + particle_velocity);
-    let steps = (fed_cells as f64 * sample.cell / u_s / step).ceil();
+    let (seconds, fed) = times(case, window_cells, u_s, particle_velocity);
+    let steps = (seconds / step).ceil();
     PointEstimate {
         particle_velocity,
         shock_velocity: u_s,
         window_cells,
         particles: particles as usize,
-        fed_cells,
+        fed_cells: fed.ceil() as usize,
         steps,
         seconds: particles * steps / PARTICLE_STEPS_PER_SECOND,
         bytes: particles * BYTES_PER_PARTICLE,
     }
+}
+
+/// Simulated time [s] and cells fed until a point can settle.
+///
+/// The front runs to its place while the outlet rests and the medium enters with u_p; then the medium enters with u_s,
+/// first until the start-up material has left with u_s - u_p, then for the blocks that must agree.
+fn times(case: &Case, window_cells: usize, shock_velocity: f64, particle_velocity: f64) -> (f64, f64) {
+    let (cell, stop) = (case.medium.cell, &case.stop);
+    let place = case.window.front_place * window_cells as f64 * cell;
+    let approach = place / (shock_velocity - particle_velocity).max(0.1 * shock_velocity);
+    let fed_on_the_way = approach * particle_velocity / cell;
+    let wanted =
+        stop.startup_cells.map(|cells| (cells as f64 - fed_on_the_way).max(0.0) * cell / shock_velocity);
+    let steady = wanted.unwrap_or(approach) + (stop.blocks * stop.block_cells) as f64 * cell / shock_velocity;
+    (approach + steady, fed_on_the_way + steady * shock_velocity / cell)
 }
 
 /// What all points need on `threads` cores: (time [s], memory [bytes]).

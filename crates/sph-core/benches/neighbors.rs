@@ -35,7 +35,10 @@ fn bench_dimension<D: Dimension>(criterion: &mut Criterion, edge: usize, tree_ed
     let build = || NeighborLists::<D>::build(&p.position, &p.size, &domain, REACH);
     group.bench_function(BenchmarkId::new("cell lists", p.len()), |b| b.iter(build));
     let lists = build();
-    group.bench_function(BenchmarkId::new("outlived", p.len()), |b| b.iter(|| lists.outlived(&p.position)));
+    let mut ranges = Vec::new();
+    group.bench_function(BenchmarkId::new("outlived", p.len()), |b| {
+        b.iter(|| lists.outlived(&p.position, &mut ranges))
+    });
 
     let (p, domain) = particles::<D>(tree_edge);
     group.throughput(Throughput::Elements(p.len() as u64));

@@ -98,7 +98,7 @@ fn lists_that_are_good_miss_no_pair<D: Dimension>(
     let lists =
         NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, Reach { factor: 1.0, skin });
     let now = scene.moved(amplitude, seed);
-    if lists.outlived(&now) {
+    if lists.outlived(&now, &mut Vec::new()) {
         let farthest_apart = 2.0 * amplitude * (D::COUNT as f64).sqrt();
         prop_assert!(farthest_apart > skin, "given up too early");
         return Ok(());

@@ -39,8 +39,8 @@ impl<D: SolidDimension> Simulation<D> {
         }
     }
 
-    /// Positions that the present neighbour lists were built from, by axis [m]; `None` if there are no lists that hold,
-    /// because the simulation is new or particles were inserted or removed.
+    /// Positions that the present neighbour lists were built from, by axis [m]; `None` if the next step will build
+    /// new ones.
     pub fn list_positions(&self) -> Option<&[Vec<f64>]> {
         self.lists_hold().then(|| self.lists().reference())
     }

@@ -9,7 +9,7 @@ use sph_core::dimension::{Components, Vector};
 use sph_core::domain::Domain;
 use sph_core::lanes::{InstructionSet, LANES, Line};
 use sph_core::neighbors::cell_grid::sort_particles;
-use sph_core::neighbors::{NeighborLists, Reach, TILE};
+use sph_core::neighbors::{DisplacementRange, NeighborLists, Reach, TILE};
 use sph_core::particles::{Constraint, Particles};
 use sph_core::reduce;
 use sph_materials::Material;
@@ -58,6 +58,7 @@ struct Scratch {
     centered: Vec<CenteredPairs>,
     reports: Vec<TileReport>,
     steps: Vec<(f64, u32)>,
+    ranges: Vec<DisplacementRange>,
 }
 
 /// What a step did.
@@ -351,6 +352,7 @@ impl<D: SolidDimension> Simulation<D> {
         if let Some(error) = first_broken(&self.scratch.reports, &self.particles, self.time) {
             return Err(error);
         }
+        self.lists_valid = !self.lists.outlived(&self.particles.position, &mut self.scratch.ranges);
         let impulse = D::vector(|a| report.input.impulse[a]);
         Ok(StepReport {
             time_step,
@@ -368,10 +370,10 @@ impl<D: SolidDimension> Simulation<D> {
 
     /// True when the next step will rebuild the neighbour lists: the moment to insert and remove particles.
     pub fn lists_stale(&self) -> bool {
-        !self.lists_valid || self.lists.outlived(&self.particles.position)
+        !self.lists_valid
     }
 
-    /// True if there are lists and no particle was inserted or removed since they were built.
+    /// True if there are lists that the next step will use.
     pub(crate) fn lists_hold(&self) -> bool {
         self.lists_valid
     }

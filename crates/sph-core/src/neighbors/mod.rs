@@ -40,6 +40,9 @@ pub struct TileLists {
     seen: Vec<u32>,
 }
 
+/// Least and largest displacement of the particles of a tile, by axis [m].
+pub type DisplacementRange = [(f64, f64); 3];
+
 /// Neighbour lists of all particles, in blocks and tiles.
 #[derive(Clone, Debug, Default)]
 pub struct NeighborLists<D: Dimension> {
@@ -137,23 +140,28 @@ impl<D: Dimension> NeighborLists<D> {
     }
 
     /// True if two particles that see each other may have moved by more than the skin against each other: the length
-    /// of the range of displacements over every pair of tiles that see each other bounds it.
-    pub fn outlived(&self, position: &D::AxisColumns) -> bool {
-        let range = |t: usize| {
-            let (first, end) = (t * TILE, ((t + 1) * TILE).min(self.n_particles));
-            let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-            for a in 0..D::COUNT {
-                let (now, then) = (&position[a][first..end], &self.reference[a][first..end]);
-                range[a] = now.iter().zip(then).fold(range[a], |(l, u), (x, y)| (l.min(x - y), u.max(x - y)));
-            }
-            range
-        };
-        let ranges: Vec<[(f64, f64); 3]> = (0..self.tiles.len()).map(range).collect();
+    /// of the range of displacements over every pair of tiles that see each other bounds it. `ranges` is scratch.
+    pub fn outlived(&self, position: &D::AxisColumns, ranges: &mut Vec<DisplacementRange>) -> bool {
+        ranges.resize(self.tiles.len(), [(0.0, 0.0); 3]);
+        ranges
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(t, range)| *range = self.displacement_range(t, position));
         let apart = |t: usize, s: usize| {
             let extent = |a: usize| ranges[t][a].1.max(ranges[s][a].1) - ranges[t][a].0.min(ranges[s][a].0);
             D::vector(extent).length()
         };
         (0..self.tiles.len()).any(|t| self.tiles[t].seen.iter().any(|&s| apart(t, s as usize) > self.skin))
+    }
+
+    fn displacement_range(&self, t: usize, position: &D::AxisColumns) -> DisplacementRange {
+        let (first, end) = (t * TILE, ((t + 1) * TILE).min(self.n_particles));
+        let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+        for a in 0..D::COUNT {
+            let (now, then) = (&position[a][first..end], &self.reference[a][first..end]);
+            range[a] = now.iter().zip(then).fold(range[a], |(l, u), (x, y)| (l.min(x - y), u.max(x - y)));
+        }
+        range
     }
 }
 

@@ -1,4 +1,32 @@
 //! Godunov-type smoothed particle hydrodynamics for elastic-plastic solids: contact, reconstruction, rates, one step.
+//!
+//! ```text
+//! dε_i/dt = 2 Σ V_j (U*_ij - U_i)·K_i ∇_iW_ij                                            (paper eq. (9))
+//! dU_i/dt = -2 Σ m_j t*_ij W'_ij/(ρ_i ρ_j h_ij)                                          (paper eq. (10))
+//! dE_i/dt = -2 Σ m_j (t*_ij·U*_ij) W'_ij/(ρ_i ρ_j h_ij)                                  (paper eq. (11))
+//! ```
+//!
+//! Each pair of particles meets in a Riemann problem ([`contact`]) between values reconstructed from corrected gradients
+//! ([`limiter`], [`pass`]); the named schemes ([`Scheme`]) share one step, which stands in [`simulation`].
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | [`contact`] | the acoustic contact, scalars only |
+//! | [`limiter`] | slope limiters |
+//! | [`scheme`] | what can be chosen: scheme, limiter, kernel, θ, Courant number, surfaces, volume consistency |
+//! | [`pass`] | pair loops in lanes: gradients and half step, contacts, time-centring |
+//! | [`prepare`], [`update`] | equations of state before the pair loops, the state at the end of the step after them |
+//! | [`surface`], [`volume`] | printed rules at free surfaces; density kept at that of the packing |
+//! | [`time_step`], [`stage_times`], [`restart`], [`error`] | what their names say |
+//!
+//! Units are SI; stress is positive in tension, pressure in compression; the plane is plane strain, with masses and
+//! energies per metre of depth. This crate does not know where particles enter or leave, and touches no files.
+//!
+//! Invariants, each held by a test: momentum and total energy of a closed system are conserved to round-off; results
+//! have the same bits for any number of threads and any set of instructions, and after a restart; a step between two
+//! rebuilds of the lists allocates nothing.
+//!
+//! Source: Rublev & Murzov, arXiv 2410.14646; Parshikov & Medin, J. Comput. Phys. 180 (2002) 358.
 
 pub mod contact;
 pub mod dimension;

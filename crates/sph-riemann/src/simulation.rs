@@ -5,6 +5,7 @@
 
 use std::time::Instant;
 
+use rayon::prelude::*;
 use sph_core::dimension::{Components, Vector};
 use sph_core::domain::Domain;
 use sph_core::lanes::{InstructionSet, LANES, Line};
@@ -302,24 +303,28 @@ impl<D: SolidDimension> Simulation<D> {
     /// δ of free particles at free surfaces, and the pairs that see one. False if there is none.
     fn find_deltas(&mut self, time_step: f64) -> bool {
         let s = &mut self.scratch;
-        let mut any = false;
-        for i in 0..self.lists.n_particles {
-            let rows = &s.rows[i / LANES * Row::count::<D>()..];
-            let row = |r: usize| rows[r].0[i % LANES];
-            let at_surface = row(Row::LEAST_EIGENVALUE) < CENTERING_EIGENVALUE;
-            s.moved[i] = at_surface && self.particles.constraint[i] == Constraint::Free;
-            any |= s.moved[i];
-            for a in 0..D::COUNT {
-                let acceleration = row(Row::FORCE + a) * row(Row::INVERSE_DENSITY);
-                let delta = 0.5 * time_step * acceleration - row(Row::half_step::<D>() + a);
-                s.delta[a][i] = if s.moved[i] { delta } else { 0.0 };
-            }
+        let (n, padded) = (self.lists.n_particles, self.lists.n_padded());
+        let (rows, constraint) = (&s.rows, &self.particles.constraint);
+        let row = |i: usize, r: usize| rows[i / LANES * Row::count::<D>() + r].0[i % LANES];
+        s.moved[..n].par_iter_mut().with_min_len(TILE).enumerate().for_each(|(i, moved)| {
+            let at_surface = row(i, Row::LEAST_EIGENVALUE) < CENTERING_EIGENVALUE;
+            *moved = at_surface && constraint[i] == Constraint::Free;
+        });
+        let moved = &s.moved;
+        for (a, delta) in s.delta.iter_mut().enumerate() {
+            delta[..n].par_iter_mut().with_min_len(TILE).enumerate().for_each(|(i, delta)| {
+                let change = || {
+                    let acceleration = row(i, Row::FORCE + a) * row(i, Row::INVERSE_DENSITY);
+                    0.5 * time_step * acceleration - row(i, Row::half_step::<D>() + a)
+                };
+                *delta = if moved[i] { change() } else { 0.0 };
+            });
         }
-        let padded = self.lists.n_padded();
         for (h, &owner) in self.lists.halo.owner.iter().enumerate() {
             s.moved[padded + h] = s.moved[owner as usize];
             s.delta.iter_mut().for_each(|delta| delta[padded + h] = delta[owner as usize]);
         }
+        let any = s.moved[..n].contains(&true);
         if any {
             find_pairs(&self.lists, &s.moved, &mut s.centered);
         }

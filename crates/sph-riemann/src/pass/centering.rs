@@ -58,7 +58,12 @@ impl CenteredPairs {
         for i in particles {
             let first = self.found.len() as u32;
             let all = moved[i];
-            self.found.extend(lists.neighbors(i).filter(|&j| all || moved[j as usize]));
+            for slot in lists.block(i / LANES) {
+                let j = slot[i % LANES];
+                if j as usize != i && (all || moved[j as usize]) {
+                    self.found.push(j);
+                }
+            }
             let end = self.found.len() as u32;
             if end > first {
                 if all { &mut self.own } else { &mut self.others }.push((i as u32, first, end));
@@ -146,16 +151,18 @@ impl<D: SolidDimension> CenteringTile<'_, '_, D> {
     /// Adds the sums to the rows of each particle once.
     #[inline(always)]
     fn add<L: Lanes>(&mut self, members: &[u32; LANES], sums: &Sums<D, L>) {
-        let lanes = (0..LANES).filter(|&l| l == 0 || members[l] != members[l - 1]);
-        for l in lanes {
-            let k = members[l] as usize - self.tile.index * TILE;
-            let rows = &mut self.tile.rows[k / LANES * Row::count::<D>()..];
-            rows[Row::POWER].0[k % LANES] += sums.power.to_array()[l];
-            for a in 0..D::COUNT {
-                for b in 0..D::COUNT {
-                    let row = Row::velocity_gradient::<D>() + a * D::COUNT + b;
-                    rows[row].0[k % LANES] += sums.gradient[a][b].to_array()[l];
-                }
+        let once = |l: usize| l == 0 || members[l] != members[l - 1];
+        let mut into = |r: usize, sum: L| {
+            let sum = sum.to_array();
+            for l in (0..LANES).filter(|&l| once(l)) {
+                let k = members[l] as usize - self.tile.index * TILE;
+                self.tile.rows[k / LANES * Row::count::<D>() + r].0[k % LANES] += sum[l];
+            }
+        };
+        into(Row::POWER, sums.power);
+        for a in 0..D::COUNT {
+            for b in 0..D::COUNT {
+                into(Row::velocity_gradient::<D>() + a * D::COUNT + b, sums.gradient[a][b]);
             }
         }
     }

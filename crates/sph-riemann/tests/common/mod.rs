@@ -42,6 +42,7 @@ pub fn simulation<D: SolidDimension>(cells: usize, jitter: f64, settings: Settin
 }
 
 /// Takes steps.
+#[allow(dead_code)] // As above.
 pub fn advance<D: SolidDimension>(simulation: &mut Simulation<D>, steps: usize) {
     for _ in 0..steps {
         simulation.step().expect("a sound step");

@@ -7,7 +7,8 @@
 //! S_i  = V_i W(0; h_S) + Σ_j V_j W(r_ij; h_S),  h_S = width × D,   ΔS_i = S_i - S_lattice
 //! ```
 //!
-//! and until the next rebuild the density relaxes, besides the flow's own rate, with
+//! with S_lattice of the square lattice in the plane and of the cubic one in space (other lattices of the same density
+//! differ by 2.5e-4 at most), and until the next rebuild the density relaxes, besides the flow's own rate, with
 //!
 //! ```text
 //! d(ln ρ)/dt += κ (c/h)(ΔS - tol)                  where ΔS > tol
@@ -24,6 +25,7 @@
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::domain::Domain;
+use sph_core::geometry::{Lattice, lattice_volume_sum};
 use sph_core::kernel::KernelFamily;
 use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, dispatch_with};
 use sph_core::neighbors::cell_grid::CellSortedPoints;
@@ -57,7 +59,8 @@ pub fn measure<D: Dimension>(
     let imposed = padded(&|i| (particles.constraint[i] != Constraint::Free) as u8 as f64, 0.0);
     let position: D::AxisColumns =
         Components::from_fn(|a| points.position[a].iter().copied().chain([FAR; LANES]).collect());
-    let lattice = grid_sum::<D>(kernel, settings.width);
+    let perfect = if D::COUNT == 2 { Lattice::Square } else { Lattice::Cubic };
+    let lattice = lattice_volume_sum(perfect, settings.width, kernel);
     let sum = &VolumeSum { points: &points, position: &position, volume: &volume, imposed: &imposed, kernel };
     let (own, size) = (&particles.position, &particles.size);
     particles.packing_excess.par_chunks_mut(TILE).enumerate().for_each(|(t, excess)| {
@@ -69,19 +72,6 @@ pub fn measure<D: Dimension>(
 
 /// Where the filling of whole lanes stands [m]: beyond every support, and finite when squared.
 const FAR: f64 = 1e100;
-
-/// S of a square or cubic lattice, smoothing length in units of its spacing.
-fn grid_sum<D: Dimension>(kernel: KernelFamily, width: f64) -> f64 {
-    let reach = (kernel.support() * width).ceil() as i64;
-    let layers = if D::COUNT == 3 { -reach..=reach } else { 0..=0 };
-    let mut sum = 0.0;
-    for z in layers {
-        for (x, y) in (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| (x, y))) {
-            sum += kernel.weight::<D>(((x * x + y * y + z * z) as f64).sqrt(), width);
-        }
-    }
-    sum
-}
 
 struct VolumeSum<'a, D: Dimension> {
     points: &'a CellSortedPoints<D>,
@@ -142,17 +132,5 @@ impl<D: Dimension> VolumeSum<'_, D> {
         });
         let total: f64 = total.to_array().iter().sum();
         (total, imposed.to_array().iter().fold(0.0, |a, &b| a.max(b)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use sph_core::dimension::Dim2;
-
-    #[test]
-    fn a_square_lattice_has_the_known_sums() {
-        assert!((grid_sum::<Dim2>(KernelFamily::WendlandC2, 2.0) - 1.0012).abs() < 5e-5);
-        assert!((grid_sum::<Dim2>(KernelFamily::WendlandC2, 1.5) - 1.0051).abs() < 5e-5);
     }
 }

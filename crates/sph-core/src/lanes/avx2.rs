@@ -149,12 +149,12 @@ impl Lanes for Avx2 {
         }
     }
     #[inline(always)]
-    fn any_less(self, limit: Self) -> bool {
+    fn less_mask(self, limit: Self) -> u8 {
         // SAFETY: the invariant of this module.
         unsafe {
-            let low = _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0);
-            let high = _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1);
-            _mm256_movemask_pd(low) | _mm256_movemask_pd(high) != 0
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0));
+            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1));
+            (low | high << 4) as u8
         }
     }
 }

@@ -129,9 +129,9 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn any_less(self, limit: Self) -> bool {
+    fn less_mask(self, limit: Self) -> u8 {
         // SAFETY: the invariant of this module.
-        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) != 0 }
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }
     }
     #[inline(always)]
     fn prefetch(lines: &[Line], stride: usize, indices: &[u32; LANES]) {

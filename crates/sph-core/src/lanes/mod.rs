@@ -101,8 +101,13 @@ pub trait Lanes: Real {
     }
     /// Rows to columns: lane `l` of element `k` becomes lane `k` of element `l`.
     fn transpose(block: [Self; LANES]) -> [Self; LANES];
+    /// Bit `l` is set where `self < limit` in lane `l`.
+    fn less_mask(self, limit: Self) -> u8;
     /// True if `self < limit` in some lane.
-    fn any_less(self, limit: Self) -> bool;
+    #[inline(always)]
+    fn any_less(self, limit: Self) -> bool {
+        self.less_mask(limit) != 0
+    }
     /// The lanes as an array.
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {
@@ -258,7 +263,11 @@ mod tests {
             let all = [a + b, a - b, a * b, a / b, -a, a.mul_add(b, one), a.abs().sqrt()];
             let picks = [a.max(b), b.max(a), a.min(b), b.min(a), a.select_less(b, a, b)];
             let back = L::transpose(records);
-            let any = [L::splat(a.any_less(b) as u8 as f64), L::splat(one.any_less(one) as u8 as f64)];
+            let any = [
+                L::splat(a.any_less(b) as u8 as f64),
+                L::splat(one.any_less(one) as u8 as f64),
+                L::splat(b.less_mask(a) as f64),
+            ];
             for lanes in all.iter().chain(&picks).chain(&records).chain(&back).chain(&any) {
                 // A NaN's sign and payload are nobody's concern.
                 self.1.extend(lanes.to_array().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
@@ -277,11 +286,12 @@ mod tests {
                 bits
             })
             .collect();
-        assert_eq!(results[0].len(), 30 * LANES);
+        assert_eq!(results[0].len(), 31 * LANES);
         // Element k of record r, line 1, is 100 (2 r + 1) + k.
         assert_eq!(f64::from_bits(results[0][12 * LANES + 8 * 2]), 1502.0);
         assert_eq!(f64::from_bits(results[0][20 * LANES + 2]), 1502.0, "transposed back");
         assert_eq!(&results[0][28 * LANES..][..9], [[1.0_f64.to_bits(); 8].as_slice(), &[0]].concat());
+        assert_eq!(f64::from_bits(results[0][30 * LANES]), 0b0000_0101 as f64, "where b < a");
         for result in &results[1..] {
             assert_eq!(result, &results[0]);
         }

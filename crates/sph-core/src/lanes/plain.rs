@@ -106,7 +106,7 @@ impl Lanes for Plain {
         std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
     }
     #[inline(never)]
-    fn any_less(self, limit: Self) -> bool {
-        (0..LANES).any(|l| self.0[l] < limit.0[l])
+    fn less_mask(self, limit: Self) -> u8 {
+        (0..LANES).fold(0, |mask, l| mask | ((self.0[l] < limit.0[l]) as u8) << l)
     }
 }

@@ -15,6 +15,7 @@ pub mod brute_force;
 pub mod cell_grid;
 pub mod halo;
 pub mod kd_tree;
+mod search;
 
 use rayon::prelude::*;
 
@@ -23,6 +24,7 @@ use crate::domain::Domain;
 use crate::lanes::LANES;
 use cell_grid::CellSortedPoints;
 pub use halo::Halo;
+use search::Search;
 
 /// Blocks in a tile.
 pub const TILE_BLOCKS: usize = 32;
@@ -75,20 +77,8 @@ impl<D: Dimension> NeighborLists<D> {
         let halo = Halo::<D>::build(position, domain, farthest);
         let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(position, a));
         let points = CellSortedPoints::<D>::new(&all, farthest.max(f64::MIN_POSITIVE));
-        let size_of: Vec<f64> = points
-            .index
-            .iter()
-            .map(|&i| {
-                if (i as usize) < n_particles {
-                    size[i as usize]
-                } else {
-                    size[halo.owner[i as usize - n_particles] as usize]
-                }
-            })
-            .collect();
+        let search = Search::new(&points, &halo, size, reach, farthest);
         let n_tiles = n_particles.div_ceil(TILE);
-        let search =
-            Search { points: &points, size, size_of: &size_of, halo: &halo, reach, n_particles, farthest };
         let tiles = (0..n_tiles).into_par_iter().map(|t| search.tile(t, position)).collect();
         let reference = position.as_ref().to_vec();
         Self { n_particles, halo, tiles, reference, skin: reach.skin }
@@ -162,92 +152,5 @@ impl<D: Dimension> NeighborLists<D> {
             range[a] = now.iter().zip(then).fold(range[a], |(l, u), (x, y)| (l.min(x - y), u.max(x - y)));
         }
         range
-    }
-}
-
-/// What the search of one tile reads.
-struct Search<'a, D: Dimension> {
-    points: &'a CellSortedPoints<D>,
-    size: &'a [f64],
-    size_of: &'a [f64],
-    halo: &'a Halo<D>,
-    reach: Reach,
-    n_particles: usize,
-    farthest: f64,
-}
-
-impl<D: Dimension> Search<'_, D> {
-    fn tile(&self, t: usize, position: &D::AxisColumns) -> TileLists {
-        let first = t * TILE;
-        let end = ((t + 1) * TILE).min(self.n_particles);
-        let mut lists = TileLists { start: vec![0], ..Default::default() };
-        let mut found: [Vec<u32>; LANES] = Default::default();
-        let mut beyond = Vec::new();
-        let mut seen = vec![false; self.n_particles.div_ceil(TILE)];
-        for block in (first..end).step_by(LANES) {
-            for lane in 0..LANES {
-                found[lane].clear();
-                if block + lane < end {
-                    beyond.clear();
-                    self.particle(block + lane, position, &mut found[lane], &mut beyond);
-                    found[lane].extend_from_slice(&beyond);
-                    self.mark_seen(&mut found[lane], &mut seen);
-                }
-            }
-            let longest = found.iter().map(Vec::len).max().unwrap_or(0);
-            for k in 0..longest {
-                let slot = |l: usize| found[l].get(k).copied().unwrap_or((block + l) as u32);
-                lists.slots.push(std::array::from_fn(slot));
-            }
-            lists.start.push(lists.slots.len() as u32);
-        }
-        lists.seen = (0..seen.len() as u32).filter(|&s| seen[s as usize]).collect();
-        lists.slots.shrink_to_fit();
-        lists
-    }
-
-    /// Points near particle `i`, in the order of the cells: those within reach in `found`, those in the skin in `beyond`.
-    /// Pairs of the skin stand last, so that the slots of a block that no lane needs yet come together and are skipped.
-    fn particle(&self, i: usize, position: &D::AxisColumns, found: &mut Vec<u32>, beyond: &mut Vec<u32>) {
-        let here = D::vector(|a| position[a][i]);
-        let own = self.size[i];
-        self.points.runs_near(here, self.farthest, |first, end| {
-            let (mut near, mut far) = (found.len(), beyond.len());
-            // Branch-free: every candidate is written to both, and counted where it belongs.
-            found.resize(near + end - first, 0);
-            beyond.resize(far + end - first, 0);
-            for p in first..end {
-                let mut r2 = 0.0;
-                for a in 0..D::COUNT {
-                    let d = self.points.position[a][p] - here[a];
-                    r2 += d * d;
-                }
-                let reach = self.reach.factor * (own + self.size_of[p]);
-                let cut = reach + self.reach.skin;
-                let j = self.points.index[p];
-                let within = r2 < reach * reach;
-                found[near] = j;
-                beyond[far] = j;
-                near += (within & (j as usize != i)) as usize;
-                far += (!within & (r2 < cut * cut)) as usize;
-            }
-            found.truncate(near);
-            beyond.truncate(far);
-        });
-    }
-
-    /// Turns point indices into record indices (copies stand behind the filling) and notes the tiles that are seen.
-    fn mark_seen(&self, found: &mut [u32], seen: &mut [bool]) {
-        let filling = (self.n_particles.div_ceil(LANES) * LANES - self.n_particles) as u32;
-        for j in found {
-            let owner = if (*j as usize) < self.n_particles {
-                *j
-            } else {
-                let owner = self.halo.owner[*j as usize - self.n_particles];
-                *j += filling;
-                owner
-            };
-            seen[owner as usize / TILE] = true;
-        }
     }
 }

@@ -2,7 +2,10 @@
 //!
 //! Each command is one file. They spawn release builds of the programs and link no numerics.
 
+mod docs;
+mod files;
 mod process;
+mod tidy;
 mod validate;
 
 use std::process::ExitCode;
@@ -21,10 +24,16 @@ struct Arguments {
 enum Task {
     /// Run the problems with known answers and hold the figures against their gates.
     Validate(validate::Arguments),
+    /// Hold the sources against the rules of the house: dependencies, module docs, paths, prints, sizes.
+    Tidy,
+    /// Build rustdoc with warnings denied, check the links of all Markdown files, build the guide.
+    Docs,
 }
 
 fn main() -> anyhow::Result<ExitCode> {
     match Arguments::parse().task {
         Task::Validate(arguments) => validate::run(&arguments),
+        Task::Tidy => tidy::run(),
+        Task::Docs => docs::run(),
     }
 }

@@ -1,0 +1,210 @@
+//! The rules that single files obey.
+
+use super::Fault;
+use super::code::{blank, has_word};
+use crate::files::Text;
+
+/// Files of more lines are refused.
+const TOO_LONG: usize = 600;
+/// Files of more lines are told.
+const LONG: usize = 400;
+
+/// Folders of single machines: a path into them means nothing elsewhere.
+const MACHINE_FOLDERS: [&str; 4] = ["work", "tmp", "root", "home"];
+
+/// Macros that write to the terminal.
+const PRINTS: [&str; 4] = ["println!", "eprintln!", "print!", "eprint!"];
+
+/// Sources that may print, beside `src/bin/`, and why.
+const MAY_PRINT: [(&str, &str); 3] = [
+    ("crates/sph-hugoniot/src/cli.rs", "what the user asked for, and the faults of a case file"),
+    ("crates/sph-hugoniot/src/run.rs", "failed points and the summary at the end of a run"),
+    ("xtask/src/", "a program"),
+];
+
+/// Sources with unsafe code, and why.
+const MAY_BE_UNSAFE: [(&str, &str); 10] = [
+    ("crates/sph-core/src/lanes/avx2.rs", "instructions of the processor"),
+    ("crates/sph-core/src/lanes/avx512.rs", "instructions of the processor"),
+    (
+        "crates/sph-core/src/lanes/mod.rs",
+        "records loaded without bounds checks; kernels compiled for instructions",
+    ),
+    ("crates/sph-core/src/lanes/plain.rs", "the same interface as the other lanes"),
+    ("crates/sph-core/src/tiles.rs", "a dozen columns split into tiles without an allocation"),
+    ("crates/sph-riemann/src/pass/contact.rs", "records loaded without bounds checks"),
+    ("crates/sph-riemann/src/pass/gradient.rs", "records loaded without bounds checks"),
+    ("crates/sph-riemann/src/pass/mod.rs", "records loaded without bounds checks"),
+    ("crates/sph-riemann/src/update.rs", "the tiles of all columns of a step"),
+    ("crates/sph-riemann/tests/allocation.rs", "an allocator that counts"),
+];
+
+/// What was found.
+#[derive(Debug, Default)]
+pub struct Findings {
+    /// What is refused.
+    pub faults: Vec<Fault>,
+    /// What is only told.
+    pub notes: Vec<String>,
+}
+
+/// Looks at every text.
+pub fn check(texts: &[Text]) -> Findings {
+    let mut findings = Findings::default();
+    for text in texts {
+        machine_paths(text, &mut findings.faults);
+        if text.is_rust() {
+            rust(text, &mut findings);
+        }
+    }
+    stale_exceptions(texts, &mut findings.faults);
+    findings
+}
+
+fn rust(text: &Text, findings: &mut Findings) {
+    let mut refuse = |line: usize, message: &str| {
+        findings.faults.push(Fault { path: text.path.clone(), line, message: message.into() });
+    };
+    if !text.content.starts_with("//!") {
+        refuse(1, "no module docs; hint: the first line is `//! What this is for.`");
+    }
+    let code = blank(&text.content);
+    let silent = must_be_silent(&text.path);
+    let tests = code.lines().position(|line| line.trim() == "#[cfg(test)]").unwrap_or(usize::MAX);
+    for (k, line) in code.lines().enumerate() {
+        if has_word(line, "dbg!") {
+            refuse(k + 1, "dbg! was left behind");
+        }
+        if silent && k < tests && PRINTS.iter().any(|print| has_word(line, print)) {
+            refuse(k + 1, "a library prints; hint: return it, or list the file in xtask/src/tidy/sources.rs");
+        }
+        if line.trim_start().starts_with("#[ignore") {
+            refuse(k + 1, "an ignored test; hint: make it quick, or move it to a command");
+        }
+        if has_word(line, "unsafe") && !listed(&MAY_BE_UNSAFE, &text.path) {
+            refuse(k + 1, "unsafe code in a file that is not listed in xtask/src/tidy/sources.rs");
+        }
+    }
+    let lines = text.content.lines().count();
+    if lines > TOO_LONG {
+        refuse(0, &format!("{lines} lines, more than {TOO_LONG}; hint: two things in one file"));
+    } else if lines > LONG {
+        findings.notes.push(format!("{}: {lines} lines", text.path));
+    }
+}
+
+/// Libraries: sources below `src/` that are neither programs nor tests.
+fn must_be_silent(path: &str) -> bool {
+    let test = path.ends_with("/tests.rs") || path.ends_with("_tests.rs");
+    path.contains("/src/") && !path.contains("/src/bin/") && !test && !listed(&MAY_PRINT, path)
+}
+
+fn listed(list: &[(&str, &str)], path: &str) -> bool {
+    list.iter().any(|(listed, _)| path == *listed || (listed.ends_with('/') && path.starts_with(listed)))
+}
+
+fn machine_paths(text: &Text, faults: &mut Vec<Fault>) {
+    for (k, line) in text.content.lines().enumerate() {
+        if let Some(folder) = MACHINE_FOLDERS.iter().find(|folder| names_folder(line, folder)) {
+            let message = format!("a path into the folder {folder} of one machine");
+            faults.push(Fault { path: text.path.clone(), line: k + 1, message });
+        }
+    }
+}
+
+/// True if an absolute path that starts with the folder stands in the line.
+fn names_folder(line: &str, folder: &str) -> bool {
+    let pattern = format!("/{folder}/");
+    let inside_a_path = |c: char| c.is_alphanumeric() || "_-.~*})/".contains(c);
+    line.match_indices(&pattern).any(|(at, _)| !line[..at].ends_with(inside_a_path))
+}
+
+/// Exceptions that nobody needs any more must go.
+fn stale_exceptions(texts: &[Text], faults: &mut Vec<Fault>) {
+    for (path, _) in MAY_BE_UNSAFE {
+        let used = texts.iter().any(|t| t.path == path && has_word(&blank(&t.content), "unsafe"));
+        if !used {
+            let message = "listed as unsafe in xtask/src/tidy/sources.rs, but is not there or not unsafe";
+            faults.push(Fault { path: path.into(), line: 0, message: message.into() });
+        }
+    }
+    for (path, _) in MAY_PRINT {
+        if !texts.iter().any(|t| t.path.starts_with(path)) {
+            let message = "may print as xtask/src/tidy/sources.rs has it, but is not there";
+            faults.push(Fault { path: path.into(), line: 0, message: message.into() });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn faults_of(path: &str, content: &str) -> Vec<String> {
+        let text = Text { path: path.into(), content: content.into() };
+        let mut findings = Findings::default();
+        machine_paths(&text, &mut findings.faults);
+        if text.is_rust() {
+            rust(&text, &mut findings);
+        }
+        findings.faults.iter().map(|fault| format!("{}: {}", fault.line, fault.message)).collect()
+    }
+
+    #[test]
+    fn a_good_file_has_no_faults() {
+        let good = "//! Sums.\n\n/// Prints nothing: println!(\"unsafe\") in words is fine.\npub fn f() {}\n";
+        assert_eq!(faults_of("crates/sph-core/src/x.rs", good), [""; 0]);
+    }
+
+    #[test]
+    fn every_fault_is_told_with_its_line() {
+        let bad = "use x;\nfn f() {\n    println!(\"a\");\n    unsafe { g() }\n}\n\n#[ignore]\nfn t() { dbg!(1); }\n";
+        let faults = faults_of("crates/sph-core/src/x.rs", bad);
+        assert_eq!(faults.len(), 5, "{faults:?}");
+        for (fault, start) in
+            faults.iter().zip(["1: no module", "3: a library", "4: unsafe", "7: an ign", "8: dbg"])
+        {
+            assert!(fault.starts_with(start), "{fault}");
+        }
+    }
+
+    #[test]
+    fn programs_tests_and_examples_may_print() {
+        let prints = "//! Prints.\n\nfn main() {\n    println!(\"a\");\n}\n";
+        for path in [
+            "crates/a/src/bin/a.rs",
+            "crates/a/examples/b.rs",
+            "crates/a/tests/c.rs",
+            "crates/a/src/d_tests.rs",
+        ] {
+            assert_eq!(faults_of(path, prints), [""; 0], "{path}");
+        }
+        let tested = "//! Silent.\n\n#[cfg(test)]\nmod tests {\n    fn t() { println!(\"a\"); }\n}\n";
+        assert_eq!(faults_of("crates/a/src/x.rs", tested), [""; 0]);
+        assert_eq!(faults_of("crates/a/src/x.rs", prints).len(), 1);
+    }
+
+    #[test]
+    fn machine_paths_are_found_and_others_are_not() {
+        let folder = MACHINE_FOLDERS[1];
+        for bad in [format!("open(\"/{folder}/a\")"), format!("see /{folder}/x.csv")] {
+            assert_eq!(faults_of("docs/a.md", &bad).len(), 1, "{bad}");
+        }
+        for good in [format!("target/{folder}/a"), format!("https://x.org/{folder}/a"), "/usr/bin/env".into()]
+        {
+            assert_eq!(faults_of("docs/a.md", &good), [""; 0], "{good}");
+        }
+    }
+
+    #[test]
+    fn long_files_are_told_and_very_long_ones_refused() {
+        let of_lines = |n: usize| Text { path: "crates/a/src/x.rs".into(), content: "//! x\n".repeat(n) };
+        let mut findings = Findings::default();
+        rust(&of_lines(LONG), &mut findings);
+        assert!(findings.notes.is_empty() && findings.faults.is_empty());
+        rust(&of_lines(LONG + 1), &mut findings);
+        assert!(findings.notes.len() == 1 && findings.faults.is_empty());
+        rust(&of_lines(TOO_LONG + 1), &mut findings);
+        assert_eq!(findings.faults.len(), 1);
+    }
+}

@@ -9,12 +9,15 @@ use crate::search::Tracker;
 use crate::search::frame_tracking::Observation;
 use crate::shock::ShockHistory;
 use serde::{Deserialize, Serialize};
+use sph_riemann::Clock;
 
 /// State of a window, without the particles (see [`crate::Window::save`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowState {
     /// Cursor of the feed.
     pub feed: FeedState,
+    /// Clock of the simulation.
+    pub clock: Clock,
     /// Everything else.
     pub progress: Progress,
 }

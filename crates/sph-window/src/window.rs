@@ -74,10 +74,13 @@ impl<D: SolidDimension> Window<D> {
         let block = settings.block * feed.sample().particle_size();
         let history = ShockHistory::new(feed.sample().whole_periods(block));
         let progress = Progress::new(frame, ledger, history);
-        Self::assemble(feed, particles, materials, solver, settings, progress)
+        let regions = settings.regions_for(feed.sample().particle_size());
+        let simulation = Simulation::new(domain(&feed, regions.length), materials, particles, solver)?;
+        Ok(Self { simulation, feed, settings, regions, progress })
     }
 
-    /// A window that goes on from a saved state and its particles, in their saved order.
+    /// A window that goes on from a saved state with the same bits: its particles in their saved order, and the
+    /// positions that its neighbour lists were built from, if it had any ([`Simulation::list_positions`]).
     ///
     /// # Errors
     ///
@@ -89,32 +92,25 @@ impl<D: SolidDimension> Window<D> {
         settings: WindowSettings,
         saved: WindowState,
         particles: Particles<D>,
+        list_positions: Option<&[Vec<f64>]>,
     ) -> Result<Self, WindowError> {
         settings.validate(sample.particle_size())?;
         let feed = Feed::restore(sample, saved.feed)?;
-        Self::assemble(feed, particles, materials, solver, settings, saved.progress)
-    }
-
-    fn assemble(
-        feed: Feed<D>,
-        particles: Particles<D>,
-        materials: Vec<Material>,
-        solver: Settings,
-        settings: WindowSettings,
-        progress: Progress,
-    ) -> Result<Self, WindowError> {
         let regions = settings.regions_for(feed.sample().particle_size());
-        let simulation = Simulation::new(domain(&feed, regions.length), materials, particles, solver)?;
-        Ok(Self { simulation, feed, settings, regions, progress })
+        let domain = domain(&feed, regions.length);
+        let simulation =
+            Simulation::restore(domain, materials, particles, solver, saved.clock, list_positions)?;
+        Ok(Self { simulation, feed, settings, regions, progress: saved.progress })
     }
 
-    /// The state beside the particles, which are [`Simulation::particles`].
-    ///
-    /// Saving makes the neighbour lists stale: the run that goes on and the run that is restored then make the same
-    /// steps, to the last bit.
-    pub fn save(&mut self) -> WindowState {
-        let _ = self.simulation.particles_mut();
-        WindowState { feed: self.feed.state(), progress: self.progress.clone() }
+    /// The state beside [`Simulation::particles`] and [`Simulation::list_positions`]. Saving changes nothing: a run that
+    /// was saved on the way has the bits of one that was not.
+    pub fn save(&self) -> WindowState {
+        WindowState {
+            feed: self.feed.state(),
+            clock: self.simulation.clock(),
+            progress: self.progress.clone(),
+        }
     }
 
     /// One step.

@@ -13,7 +13,7 @@ const CASE: &str = r#"Case(
     stop: (startup_cells: Cells(4), block_cells: 2, tolerance: 0.1, max_fed_cells: 12),
 )"#;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let case = config::parse(CASE, "one_point.rs")?;
     let sample = microstructure::sample(&case.medium, case.material.reference_density);
     println!("{} particles a cell, m = {:.4}", sample.particles.len(), sample.porosity);

@@ -20,6 +20,7 @@ pub mod outcome;
 pub mod point;
 pub mod reference;
 pub mod report;
+pub mod restart;
 pub mod run;
 pub mod setup;
 pub mod statistics;

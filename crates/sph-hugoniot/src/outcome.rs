@@ -2,13 +2,14 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
 use sph_materials::jump::JumpResiduals;
 use sph_riemann::StageTimes;
 
 use crate::observe::{Bin, Fields, States};
 
 /// How a point ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// Successive blocks agree.
     Settled,
@@ -32,7 +33,7 @@ impl fmt::Display for Status {
 }
 
 /// What a point leaves. Numbers that could not be measured are `NaN`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PointOutcome {
     /// u_p as asked for [m/s].
     pub particle_velocity: f64,

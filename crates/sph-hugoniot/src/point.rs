@@ -8,9 +8,13 @@
 //! 3. **End.** Settled, or `max_fed_cells` are fed: then the last blocks are reported with the status `not settled`.
 //!
 //! A step that fails ends the point with the status `failed` and the reason; what was measured until then is kept.
+//!
+//! A point that is kept on disk ([`crate::restart`]) goes on from its last state, and a point that has ended is not run.
 
 use std::time::Instant;
 
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
 use sph_core::Dim2;
 use sph_window::{Observation, Window, WindowError};
 
@@ -18,6 +22,7 @@ use crate::config::Case;
 use crate::microstructure::Sample;
 use crate::observe::{Fields, FrontProfile, ProfileGrid, States};
 use crate::outcome::{PointOutcome, Status};
+use crate::restart::Keeper;
 use crate::setup;
 use crate::statistics::{mean, relative_spread};
 
@@ -43,18 +48,41 @@ impl Control for Unwatched {
     fn progress(&self, _swept_cells: f64, _expected_cells: f64) {}
 }
 
-/// Runs one point; a failure is part of the outcome.
-pub fn run(case: &Case, sample: &Sample, particle_velocity: f64, control: &dyn Control) -> PointOutcome {
+/// Runs one point; a failure of the method is part of the outcome.
+///
+/// # Errors
+/// If what is kept of the point cannot be read or written.
+pub fn run(
+    case: &Case,
+    sample: &Sample,
+    particle_velocity: f64,
+    control: &dyn Control,
+    mut keeper: Option<Keeper>,
+) -> Result<PointOutcome> {
+    if let Some(outcome) = keeper.as_ref().map(Keeper::outcome).transpose()?.flatten() {
+        return Ok(outcome);
+    }
     let started = Instant::now();
-    let mut outcome = match Point::new(case, sample, particle_velocity) {
+    let kept = keeper.as_ref().map(|k| k.load(case, sample, particle_velocity)).transpose()?.flatten();
+    let point = match kept {
+        Some((window, progress)) => Ok(Point { case, sample, particle_velocity, window, progress }),
+        None => Point::new(case, sample, particle_velocity),
+    };
+    let mut outcome = match point {
         Ok(mut point) => {
-            let status = point.drive(control);
-            point.outcome(status)
+            let before = point.progress.seconds;
+            let status = point.drive(control, &mut keeper, started)?;
+            let mut outcome = point.outcome(status);
+            outcome.wall_seconds = before;
+            outcome
         }
         Err(error) => PointOutcome::failed(particle_velocity, error.to_string()),
     };
-    outcome.wall_seconds = started.elapsed().as_secs_f64();
-    outcome
+    outcome.wall_seconds += started.elapsed().as_secs_f64();
+    if let (Some(keeper), false) = (&keeper, outcome.status == Status::Interrupted) {
+        keeper.finish(&outcome)?;
+    }
+    Ok(outcome)
 }
 
 /// A point under way.
@@ -63,6 +91,12 @@ struct Point<'c> {
     sample: &'c Sample,
     particle_velocity: f64,
     window: Window<Dim2>,
+    progress: PointProgress,
+}
+
+/// How far a point has come, beside its window.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PointProgress {
     last_look: Option<Observation>,
     /// Place of the front, smoothed over [`FRONT_MEMORY`] [m].
     mean_front: f64,
@@ -70,6 +104,8 @@ struct Point<'c> {
     blocks_from: Option<f64>,
     /// One profile for each block; the last one is under way.
     profiles: Vec<FrontProfile>,
+    /// Time that earlier runs took [s].
+    seconds: f64,
 }
 
 impl<'c> Point<'c> {
@@ -77,58 +113,59 @@ impl<'c> Point<'c> {
         let feed = setup::feed_sample(sample)?;
         let settings = setup::window_settings(case, particle_velocity);
         let window = Window::new(feed, vec![case.material.clone()], case.scheme, settings)?;
-        Ok(Self {
-            case,
-            sample,
-            particle_velocity,
-            window,
-            last_look: None,
-            mean_front: 0.0,
-            blocks_from: None,
-            profiles: Vec::new(),
-        })
+        Ok(Self { case, sample, particle_velocity, window, progress: PointProgress::default() })
     }
 
-    fn drive(&mut self, control: &dyn Control) -> Status {
+    fn drive(
+        &mut self,
+        control: &dyn Control,
+        keeper: &mut Option<Keeper>,
+        started: Instant,
+    ) -> Result<Status> {
         loop {
-            if control.interrupted() {
-                return Status::Interrupted;
+            let interrupted = control.interrupted();
+            if let Some(keeper) = keeper.as_mut().filter(|k| interrupted || k.is_due()) {
+                let seconds = self.progress.seconds + started.elapsed().as_secs_f64();
+                keeper.save(&self.window, &PointProgress { seconds, ..self.progress.clone() })?;
+            }
+            if interrupted {
+                return Ok(Status::Interrupted);
             }
             let observation = match self.window.step() {
                 Ok(report) => report.observation,
-                Err(error) => return Status::Failed(error.to_string()),
+                Err(error) => return Ok(Status::Failed(error.to_string())),
             };
             let Some(observation) = observation else { continue };
             let status = self.look(&observation);
             control.progress(observation.swept / self.sample.cell, self.expected_cells());
             if let Some(status) = status {
-                return status;
+                return Ok(status);
             }
         }
     }
 
     /// Takes a look at the front in; the status if the point has come to its end.
     fn look(&mut self, now: &Observation) -> Option<Status> {
-        let before = self.last_look.replace(*now).unwrap_or(*now);
+        let before = self.progress.last_look.replace(*now).unwrap_or(*now);
         self.smooth_front(now, &before);
-        if self.blocks_from.is_none() && self.startup_is_over() {
+        if self.progress.blocks_from.is_none() && self.startup_is_over() {
             tracing::info!(
                 u_p = self.particle_velocity,
                 cells = now.swept / self.sample.cell,
                 "start-up is over"
             );
-            self.blocks_from = Some(now.swept);
-            self.profiles.push(self.new_profile());
+            self.progress.blocks_from = Some(now.swept);
+            self.progress.profiles.push(self.new_profile());
         }
-        if let Some(profile) = self.profiles.last_mut() {
-            profile.observe(&self.window, self.mean_front, now.time - before.time);
+        if let Some(profile) = self.progress.profiles.last_mut() {
+            profile.observe(&self.window, self.progress.mean_front, now.time - before.time);
         }
-        if self.blocks_from.is_some() && self.full_blocks() >= self.profiles.len() {
+        if self.progress.blocks_from.is_some() && self.full_blocks() >= self.progress.profiles.len() {
             tracing::info!(u_p = self.particle_velocity, u_s = ?self.counted_blocks(), "blocks");
             if self.has_settled() {
                 return Some(Status::Settled);
             }
-            self.profiles.push(self.new_profile());
+            self.progress.profiles.push(self.new_profile());
         }
         (self.window.fed_cells() >= self.case.stop.max_fed_cells as f64).then_some(Status::NotSettled)
     }
@@ -136,11 +173,11 @@ impl<'c> Point<'c> {
     /// The front hops from pore to pore; profiles are taken where it is on the mean of a few cells, so that the pores
     /// pass through them.
     fn smooth_front(&mut self, now: &Observation, before: &Observation) {
-        if self.mean_front == 0.0 {
-            self.mean_front = now.front;
+        if self.progress.mean_front == 0.0 {
+            self.progress.mean_front = now.front;
         }
         let swept = (now.swept - before.swept) / self.sample.cell;
-        self.mean_front += (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.mean_front);
+        self.progress.mean_front += (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.progress.mean_front);
     }
 
     fn new_profile(&self) -> FrontProfile {
@@ -158,7 +195,7 @@ impl<'c> Point<'c> {
 
     /// u_s over each cell that the front swept since start-up [m/s].
     fn cell_velocities(&self) -> Vec<f64> {
-        let from = self.blocks_from.unwrap_or(f64::INFINITY);
+        let from = self.progress.blocks_from.unwrap_or(f64::INFINITY);
         self.window.blocks().iter().filter(|b| b.swept >= from).map(|b| b.velocity()).collect()
     }
 
@@ -190,17 +227,17 @@ impl<'c> Point<'c> {
     fn expected_cells(&self) -> f64 {
         let stop = &self.case.stop;
         let cells = self.case.window.cells_at(self.particle_velocity);
-        let blocks = self.profiles.len().max(stop.blocks) * stop.block_cells;
-        let start = self.blocks_from.map(|from| from / self.sample.cell);
+        let blocks = self.progress.profiles.len().max(stop.blocks) * stop.block_cells;
+        let start = self.progress.blocks_from.map(|from| from / self.sample.cell);
         start.unwrap_or(stop.startup_at(cells) as f64 + 0.5 * cells as f64) + blocks as f64
     }
 
     /// The mean profile of the blocks that count.
     fn profile(&self) -> Option<FrontProfile> {
-        let full = self.full_blocks().min(self.profiles.len());
+        let full = self.full_blocks().min(self.progress.profiles.len());
         let counted = match full {
-            0 => &self.profiles[..],
-            n => &self.profiles[n.saturating_sub(self.case.stop.blocks)..n],
+            0 => &self.progress.profiles[..],
+            n => &self.progress.profiles[n.saturating_sub(self.case.stop.blocks)..n],
         };
         let (first, rest) = counted.split_first()?;
         let mut sum = first.clone();

@@ -5,6 +5,14 @@ use std::process::Command;
 
 use sph_io::table::Table;
 
+#[path = "../examples/one_point.rs"]
+mod one_point;
+
+#[test]
+fn the_example_runs() {
+    one_point::main().unwrap();
+}
+
 fn hugoniot() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hugoniot"));
     command.env_remove("RUST_BACKTRACE").env_remove("RUST_LOG");

@@ -1,5 +1,6 @@
 //! The particles at one moment, as the field images need them.
 
+use serde::{Deserialize, Serialize};
 use sph_core::Dim2;
 use sph_window::Window;
 
@@ -7,7 +8,7 @@ use sph_window::Window;
 const OVERLAP: f64 = 1.2;
 
 /// Places and fields of all particles at one moment.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
     /// Time [s].
     pub time: f64,

@@ -5,6 +5,7 @@
 //! it lies wholly within the free flow. Velocities are relative to the medium ahead at rest: u = u_x + u_b, with the
 //! velocity u_b at which the medium enters.
 
+use serde::{Deserialize, Serialize};
 use sph_core::{Dim2, Particles};
 use sph_window::Window;
 
@@ -12,7 +13,7 @@ use sph_window::Window;
 const SUMS: usize = 8;
 
 /// Where the bins stand: `behind` of them at ξ < 0, `ahead` at ξ > 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProfileGrid {
     /// Width of a bin [m].
     pub bin: f64,
@@ -40,14 +41,14 @@ impl ProfileGrid {
 }
 
 /// Sums over time and space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Sums {
     time: f64,
     values: [f64; SUMS],
 }
 
 /// A profile under way.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrontProfile {
     grid: ProfileGrid,
     cross_section: f64,
@@ -56,7 +57,7 @@ pub struct FrontProfile {
 }
 
 /// Mean values of a bin, or of several.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bin {
     /// Middle ξ relative to the front [m].
     pub place: f64,

@@ -7,14 +7,14 @@
 //! The motion that is left in the means (a cellular medium closes its pores by jets) carries momentum and energy: its
 //! flux ρ⟨u'²⟩ is added to -σ_xx, its kinetic energy to e, before the residuals are taken.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sph_materials::{Jump, ShockState};
 use sph_window::PlateauMargins;
 
 use super::profile::{Bin, FrontProfile};
 
 /// A mean state.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeanState {
     /// Density of the packing [kg/m³].
     pub packing_density: f64,
@@ -63,7 +63,7 @@ impl MeanState {
 }
 
 /// Both states.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct States {
     /// Between precursor and compaction wave.
     pub ahead: MeanState,

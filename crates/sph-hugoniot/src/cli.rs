@@ -4,13 +4,14 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
 use crate::config::resolve::PARTICLE_VELOCITIES;
 use crate::config::units::Velocity;
-use crate::run::{self, RunEnd, RunOptions};
-use crate::{check, config, template};
+use crate::run::{self, Earlier, RunEnd, RunOptions};
+use crate::{check, config, restart, template};
 
 /// Everything went well.
 pub const SUCCESS: u8 = 0;
@@ -27,6 +28,7 @@ const EXAMPLES: &str = "Examples:
   hugoniot run case.ron                      all points of the case
   hugoniot run case.ron --up 100,150         two points only
   hugoniot run case.ron --out results/a --threads 2 --quiet
+  hugoniot run case.ron --resume             go on after Ctrl-C, a crash or a power cut
 
 RUST_LOG=info tells of each point when start-up ends and what each block gives.
 Exit codes: 0 done, 2 bad input, 3 a point failed, 130 interrupted";
@@ -79,6 +81,15 @@ pub enum Command {
         /// Cores to use; default: all
         #[arg(long, value_name = "N")]
         threads: Option<usize>,
+        /// Go on with an earlier run in the folder: finished points are kept, the others go on where they were
+        #[arg(long, conflicts_with = "replace")]
+        resume: bool,
+        /// Throw the results of an earlier run in the folder away
+        #[arg(long)]
+        replace: bool,
+        /// Time between two states of a point on disk, in seconds
+        #[arg(long, value_name = "SECONDS", default_value_t = restart::INTERVAL.as_secs_f64(), value_parser = seconds)]
+        keep_every: f64,
         /// No progress, no summary; failures are still told
         #[arg(long)]
         quiet: bool,
@@ -98,12 +109,32 @@ fn particle_velocity(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Reads a time in seconds.
+fn seconds(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text:?} is no number of seconds"))?;
+    if (0.0..=1e6).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{value} s is out of range; hint: 0 to 1e6"))
+    }
+}
+
 /// Runs the command; returns the exit code.
 pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
     match arguments.command {
         Command::Init { template } => Ok(init(template.as_deref())),
         Command::Check { case, json, threads } => check_case(&case, json, threads),
-        Command::Run { case, up, out, threads, quiet } => run_case(&case, up, out, threads, quiet),
+        Command::Run { case, up, out, threads, resume, replace, keep_every, quiet } => {
+            let earlier = match (resume, replace) {
+                (true, _) => Earlier::Resume,
+                (_, true) => Earlier::Replace,
+                _ => Earlier::Refuse,
+            };
+            let threads = threads.unwrap_or_else(available_threads).clamp(1, 1024);
+            let keep_every = Duration::from_secs_f64(keep_every);
+            let options = RunOptions { folder: out.unwrap_or_default(), threads, quiet, earlier, keep_every };
+            run_case(&case, up, options)
+        }
     }
 }
 
@@ -145,13 +176,7 @@ fn check_case(path: &Path, json: bool, threads: Option<usize>) -> anyhow::Result
     Ok(SUCCESS)
 }
 
-fn run_case(
-    path: &Path,
-    mut points: Vec<f64>,
-    out: Option<PathBuf>,
-    threads: Option<usize>,
-    quiet: bool,
-) -> anyhow::Result<u8> {
+fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions) -> anyhow::Result<u8> {
     let Some(mut case) = load(path) else { return Ok(BAD_INPUT) };
     if !points.is_empty() {
         points.sort_by(f64::total_cmp);
@@ -159,11 +184,20 @@ fn run_case(
         case.points = points;
     }
     let text = std::fs::read_to_string(path)?;
-    let folder = out.unwrap_or_else(|| PathBuf::from(&case.output.directory));
-    let threads = threads.unwrap_or_else(available_threads).clamp(1, 1024);
+    if options.folder.as_os_str().is_empty() {
+        options.folder = PathBuf::from(&case.output.directory);
+    }
     let interrupt = stop_on_interrupt()?;
-    let end = run::run(&case, &text, &RunOptions { folder, threads, quiet }, &interrupt)?;
+    let end = run::run(&case, &text, &options, &interrupt)?;
+    if end == RunEnd::Interrupted {
+        let out = options.folder.display();
+        eprintln!("stopped; go on with: hugoniot run {} --out {out} --resume", path.display());
+    }
     Ok(match end {
+        RunEnd::Refused(reason) => {
+            eprintln!("error: {reason}");
+            BAD_INPUT
+        }
         RunEnd::Done => SUCCESS,
         RunEnd::SomeFailed => NUMERICAL_FAILURE,
         RunEnd::Interrupted => INTERRUPTED,

@@ -113,11 +113,16 @@ impl PointOutcome {
 
     /// Name of the point's files: `up_0100`, `up_0062.5`.
     pub fn file_stem(&self) -> String {
-        let (whole, part) = (self.particle_velocity.trunc(), self.particle_velocity.fract());
-        let part =
-            if part == 0.0 { String::new() } else { format!("{part}").trim_start_matches('0').to_string() };
-        format!("up_{whole:04}{part}")
+        file_stem(self.particle_velocity)
     }
+}
+
+/// Name of the files of the point with this u_p [m/s].
+pub fn file_stem(particle_velocity: f64) -> String {
+    let (whole, part) = (particle_velocity.trunc(), particle_velocity.fract());
+    let part =
+        if part == 0.0 { String::new() } else { format!("{part}").trim_start_matches('0').to_string() };
+    format!("up_{whole:04}{part}")
 }
 
 #[cfg(test)]

@@ -48,11 +48,17 @@ impl Control for Unwatched {
     fn progress(&self, _swept_cells: f64, _expected_cells: f64) {}
 }
 
-/// Runs one point; a failure of the method is part of the outcome.
+/// Runs one point that is kept nowhere; a failure of the method is part of the outcome.
+pub fn run(case: &Case, sample: &Sample, particle_velocity: f64, control: &dyn Control) -> PointOutcome {
+    run_kept(case, sample, particle_velocity, control, None)
+        .unwrap_or_else(|error| PointOutcome::failed(particle_velocity, error.to_string()))
+}
+
+/// Runs one point that is kept on disk, or takes it from there if it has ended.
 ///
 /// # Errors
 /// If what is kept of the point cannot be read or written.
-pub fn run(
+pub fn run_kept(
     case: &Case,
     sample: &Sample,
     particle_velocity: f64,
@@ -177,7 +183,8 @@ impl<'c> Point<'c> {
             self.progress.mean_front = now.front;
         }
         let swept = (now.swept - before.swept) / self.sample.cell;
-        self.progress.mean_front += (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.progress.mean_front);
+        self.progress.mean_front +=
+            (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.progress.mean_front);
     }
 
     fn new_profile(&self) -> FrontProfile {

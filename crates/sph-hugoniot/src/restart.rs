@@ -141,7 +141,12 @@ impl Keeper {
     ///
     /// # Errors
     /// If there are states and none can be used.
-    pub fn load(&self, case: &Case, sample: &Sample, u_p: f64) -> Result<Option<(Window<Dim2>, PointProgress)>> {
+    pub fn load(
+        &self,
+        case: &Case,
+        sample: &Sample,
+        u_p: f64,
+    ) -> Result<Option<(Window<Dim2>, PointProgress)>> {
         let Some(mut loaded) = self.store.load::<SavedPoint>()? else { return Ok(None) };
         for fault in &loaded.skipped {
             tracing::warn!("{fault}; the state before it is taken");

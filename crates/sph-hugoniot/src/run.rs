@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
+use sph_io::IoError;
+use sph_io::lock::FolderLock;
 use sph_io::progress::{Mode, Progress};
 use sph_riemann::StageTimes;
 
@@ -14,7 +16,8 @@ use crate::estimate;
 use crate::microstructure::{self, Sample};
 use crate::outcome::{PointOutcome, Status};
 use crate::point::Control;
-use crate::report::{Report, summary};
+use crate::report::{Report, earlier, summary};
+use crate::restart::Keeper;
 use crate::sweep::{self, Watch};
 
 /// How a run is made.
@@ -26,10 +29,26 @@ pub struct RunOptions {
     pub threads: usize,
     /// Without progress and summary.
     pub quiet: bool,
+    /// What happens to results that are there already.
+    pub earlier: Earlier,
+    /// Time between two states of a point on disk.
+    pub keep_every: Duration,
+}
+
+/// What happens to results that a run finds in its folder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Earlier {
+    /// The run is refused: nothing is lost by accident.
+    #[default]
+    Refuse,
+    /// The run goes on where they end, with the same bits.
+    Resume,
+    /// They are replaced.
+    Replace,
 }
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RunEnd {
     /// All points ran.
     Done,
@@ -37,12 +56,24 @@ pub enum RunEnd {
     SomeFailed,
     /// Stopped from outside.
     Interrupted,
+    /// Not started: what is in the folder stands against it, as the sentence says.
+    Refused(String),
 }
 
 /// Runs all points of a case. `interrupt` is looked at after each step.
 pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
     let started = Instant::now();
     let sample = microstructure::sample(&case.medium, case.material.reference_density);
+    std::fs::create_dir_all(&options.folder)
+        .with_context(|| format!("{}: the folder cannot be made", options.folder.display()))?;
+    let _lock = match FolderLock::acquire(&options.folder) {
+        Ok(lock) => lock,
+        Err(error @ IoError::Locked { .. }) => return Ok(RunEnd::Refused(error.to_string())),
+        Err(error) => return Err(error.into()),
+    };
+    if let Some(refusal) = earlier::settle(&options.folder, case, options.earlier)? {
+        return Ok(RunEnd::Refused(refusal));
+    }
     let report = Report::create(&options.folder, case, case_text)?;
     let costs: Vec<f64> = case.points.iter().map(|&u| estimate::point(case, &sample, u).seconds).collect();
     let mode = if options.quiet { Mode::Quiet } else { Mode::Auto };
@@ -52,6 +83,7 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         sample: &sample,
         report: &report,
         interrupt,
+        keep_every: options.keep_every,
         state: Mutex::new(State {
             outcomes: case.points.iter().map(|_| None).collect(),
             parts: vec![0.0; costs.len()],
@@ -99,6 +131,7 @@ struct Watcher<'r> {
     sample: &'r Sample,
     report: &'r Report,
     interrupt: &'r AtomicBool,
+    keep_every: Duration,
     costs: &'r [f64],
     state: Mutex<State>,
 }
@@ -144,6 +177,11 @@ impl Watcher<'_> {
 impl Watch for Watcher<'_> {
     fn control(&self, index: usize) -> Box<dyn Control + '_> {
         Box::new(PointControl { watcher: self, index })
+    }
+
+    fn keeper(&self, index: usize) -> Result<Option<Keeper>> {
+        let folder = self.report.point_folder(self.case.points[index]);
+        Keeper::new(&folder, self.keep_every).map(Some)
     }
 
     fn interrupted(&self) -> bool {

@@ -12,18 +12,24 @@ use crate::config::Case;
 use crate::microstructure::Sample;
 use crate::outcome::PointOutcome;
 use crate::point::{self, Control};
+use crate::restart::Keeper;
 
 /// What watches a sweep.
 pub trait Watch: Sync {
     /// What watches the point with this index.
     fn control(&self, index: usize) -> Box<dyn Control + '_>;
+    /// What keeps the point with this index on disk, if anything does.
+    ///
+    /// # Errors
+    /// If the place cannot be made.
+    fn keeper(&self, index: usize) -> anyhow::Result<Option<Keeper>>;
     /// True when no further point should be started.
     fn interrupted(&self) -> bool;
     /// Told when a point has ended; one call at a time. An error ends the sweep.
     fn finished(&self, index: usize, outcome: PointOutcome) -> anyhow::Result<()>;
 }
 
-/// Runs the points; returns the first error of [`Watch::finished`].
+/// Runs the points; returns the first error of what keeps and shows them.
 pub fn run(
     case: &Case,
     sample: &Sample,
@@ -65,7 +71,9 @@ fn work(
             break;
         }
         let control = watch.control(index);
-        let outcome = pool.install(|| point::run(case, sample, case.points[index], control.as_ref()));
+        let keeper = watch.keeper(index)?;
+        let u_p = case.points[index];
+        let outcome = pool.install(|| point::run_kept(case, sample, u_p, control.as_ref(), keeper))?;
         let guard = lock(error);
         if guard.is_none() {
             watch.finished(index, outcome)?;

@@ -4,12 +4,13 @@
 //! case.ron            the case file, as it was read
 //! case.json           the resolved case in SI
 //! hugoniot.csv, .json the table of all finished points
-//! points/up_0100/     profile.csv and history.csv of one point
+//! points/up_0100/     profile.csv and history.csv of one point; its outcome, or its last states (crate::restart)
 //! plots/              hugoniot, profiles, histories, fields
 //! ```
 //!
 //! The table is written anew after each finished point, atomically: whatever ends a run, what was computed is there.
 
+pub mod earlier;
 pub mod plots;
 pub mod summary;
 pub mod table;
@@ -20,7 +21,7 @@ use anyhow::{Context, Result};
 
 use crate::config::Case;
 use crate::microstructure::Sample;
-use crate::outcome::PointOutcome;
+use crate::outcome::{PointOutcome, file_stem};
 
 /// The folder of a run.
 #[derive(Clone, Debug)]
@@ -46,6 +47,11 @@ impl Report {
         &self.folder
     }
 
+    /// Folder of one point.
+    pub fn point_folder(&self, particle_velocity: f64) -> PathBuf {
+        self.folder.join("points").join(file_stem(particle_velocity))
+    }
+
     /// Writes the table of the points that are finished.
     pub fn write_table(&self, case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Result<()> {
         let table = table::hugoniot(case, sample, outcomes);
@@ -56,7 +62,7 @@ impl Report {
     /// Writes the tables and pictures of one point.
     pub fn write_point(&self, case: &Case, outcome: &PointOutcome) -> Result<()> {
         let stem = outcome.file_stem();
-        let folder = self.folder.join("points").join(&stem);
+        let folder = self.point_folder(outcome.particle_velocity);
         std::fs::create_dir_all(&folder)?;
         if !outcome.profile.is_empty() {
             table::profile(outcome).write_csv(folder.join("profile.csv"))?;

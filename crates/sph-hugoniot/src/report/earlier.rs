@@ -1,0 +1,91 @@
+//! Results of an earlier run in the folder: gone on with, replaced, or left alone.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use crate::config::Case;
+use crate::run::Earlier;
+
+/// Parts of a case that may differ when a run goes on: which points, and what is drawn of them.
+const FREE: [&str; 3] = ["points", "output", "name"];
+
+/// Makes the folder ready; the reason if the run must not start.
+///
+/// # Errors
+/// If the folder cannot be read or cleared.
+pub fn settle(folder: &Path, case: &Case, earlier: Earlier) -> Result<Option<String>> {
+    let path = folder.join("case.json");
+    if !path.exists() {
+        return Ok(None);
+    }
+    match earlier {
+        Earlier::Refuse => Ok(Some(format!(
+            "{}: there are results of an earlier run; hint: --resume goes on with it, --replace throws it away, --out \
+             names another folder",
+            folder.display()
+        ))),
+        Earlier::Replace => {
+            let points = folder.join("points");
+            if points.exists() {
+                std::fs::remove_dir_all(&points)
+                    .with_context(|| format!("{}: cannot be removed", points.display()))?;
+            }
+            Ok(None)
+        }
+        Earlier::Resume => {
+            let text = std::fs::read_to_string(&path)?;
+            let before: Value = serde_json::from_str(&text)
+                .with_context(|| format!("{}: is not what a run writes", path.display()))?;
+            let changes = changes(&before, &serde_json::to_value(case)?);
+            Ok((!changes.is_empty()).then(|| {
+                format!(
+                    "{}: the case has changed since, and a run goes on only with the same:\n{}\nhint: --out names another \
+                     folder, --replace throws the earlier results away",
+                    folder.display(),
+                    changes.join("\n")
+                )
+            }))
+        }
+    }
+}
+
+/// What differs, one line each: `field: before -> now`.
+fn changes(before: &Value, now: &Value) -> Vec<String> {
+    let mut lines = Vec::new();
+    compare("", before, now, &mut lines);
+    lines
+}
+
+fn compare(place: &str, before: &Value, now: &Value, lines: &mut Vec<String>) {
+    let below = |key: &str| if place.is_empty() { key.to_string() } else { format!("{place}.{key}") };
+    match (before, now) {
+        (Value::Object(a), Value::Object(b)) => {
+            let keys: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+            for key in keys {
+                if !(place.is_empty() && FREE.contains(&key.as_str())) {
+                    let of =
+                        |map: &serde_json::Map<String, Value>| map.get(key).cloned().unwrap_or(Value::Null);
+                    compare(&below(key), &of(a), &of(b), lines);
+                }
+            }
+        }
+        _ if before == now => {}
+        _ => lines.push(format!("  {place}: {before} -> {now}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_change_is_told_with_its_place_and_points_may_differ() {
+        let before = json!({"points": [50.0], "medium": {"porosity": 1.35, "cell": 2e-5}});
+        let now = json!({"points": [50.0, 75.0], "medium": {"porosity": 1.4, "cell": 2e-5}});
+        assert_eq!(changes(&before, &now), ["  medium.porosity: 1.35 -> 1.4"]);
+        assert!(changes(&before, &before).is_empty());
+    }
+}

@@ -82,6 +82,9 @@ struct Figure {
     scheme: SchemeName,
     metric: Metric,
     printed: BTreeMap<u32, String>,
+    /// Uncertainty of the reading of the figure, in its unit: allowed as well.
+    #[serde(default)]
+    reading: f64,
 }
 
 /// A limit of the error at every resolution.
@@ -124,8 +127,11 @@ impl GateFile {
         let is_meant = |scheme, metric| scheme == case.scheme && metric == measurement.metric;
         let errors = |figures: &[Figure], margin: f64| -> Vec<f64> {
             let meant = figures.iter().filter(|figure| is_meant(figure.scheme, figure.metric));
-            let printed = meant.filter_map(|figure| Printed::read(figure.printed.get(&case.n)?));
-            printed.map(|printed| printed.error_at_most(measurement.reference, margin)).collect()
+            let limit = |figure: &Figure| {
+                let printed = Printed::read(figure.printed.get(&case.n)?)?;
+                Some(printed.error_at_most(measurement.reference, margin) + figure.reading)
+            };
+            meant.filter_map(limit).collect()
         };
         let limits = self.limits.iter().filter(|limit| is_meant(limit.scheme, limit.metric));
         let limits = limits.map(|limit| limit.error_at_most);

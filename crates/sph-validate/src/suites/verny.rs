@@ -257,10 +257,18 @@ fn field(
 ) -> Field {
     let particles = run.simulation.particles();
     let millimeters = |column: &[f64]| column.iter().map(|x| 1e3 * x).collect();
+    let size = 20.0 / f64::from(run.case.n);
     let extent = |i: usize| 1e3 * (particles.mass[i] / particles.density[i]).sqrt();
     Field {
         moment,
-        title: format!("{}, t = {:.1} µs", run.case.scheme.title(), 1e6 * run.simulation.time()),
+        title: match moment {
+            "start" => format!("start, D_0 = {size} mm"),
+            _ => format!(
+                "{}, D_0 = {size} mm, t = {:.1} µs",
+                run.case.scheme.title(),
+                1e6 * run.simulation.time()
+            ),
+        },
         label,
         range,
         x: millimeters(&particles.position[0]),

@@ -13,6 +13,7 @@ const CASE: &str = r#"Case(
     stop: (startup_cells: Cells(4), block_cells: 2, tolerance: 0.1, max_fed_cells: 12),
 )"#;
 
+/// Runs the point and prints what it gave.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let case = config::parse(CASE, "one_point.rs")?;
     let sample = microstructure::sample(&case.medium, case.material.reference_density);

@@ -2,7 +2,7 @@
 //!
 //! A link to a heading must name one that is there, in the spelling that forges and mdbook give headings. Chapters of
 //! the guide may link to each other only, since a book takes nothing else along, and every chapter must be in its table
-//! of contents. Links to the network are not followed.
+//! of contents. Links to the network are not followed. Files of the repository that are named as `code` must be there too.
 
 use std::collections::BTreeSet;
 
@@ -11,6 +11,9 @@ use crate::tidy::Fault;
 
 /// Folder of the guide's chapters.
 const GUIDE: &str = "docs/src/";
+
+/// What a `code` starts with that names a file of the repository.
+const NAMES_A_FILE: [&str; 5] = ["crates/", "xtask/", "cases/", "validation/", "docs/"];
 
 /// A link as it is written.
 #[derive(Debug, PartialEq, Eq)]
@@ -28,6 +31,10 @@ pub fn check(texts: &[Text], exists: impl Fn(&str) -> bool) -> Vec<Fault> {
             if let Some(message) = fault_of(page, &link.target, &pages, &exists) {
                 faults.push(Fault { path: page.path.clone(), line: link.line, message });
             }
+        }
+        for name in named_files(&page.content).filter(|name| !exists(&name.target)) {
+            let message = format!("{} is not there", name.target);
+            faults.push(Fault { path: page.path.clone(), line: name.line, message });
         }
     }
     faults.extend(lost_chapters(&pages));
@@ -91,6 +98,18 @@ fn links(content: &str) -> Vec<Link> {
         }
     }
     links
+}
+
+/// Files that are named as `code`, without those that stand for many.
+fn named_files(content: &str) -> impl Iterator<Item = Link> {
+    prose(content).flat_map(|(line, text)| {
+        let codes = text.split('`').skip(1).step_by(2);
+        let files = codes.filter(|code| NAMES_A_FILE.iter().any(|start| code.starts_with(start)));
+        let single = files.filter(|file| !file.contains(['*', '<', '{', '…', ' ']) && !file.contains("your"));
+        single
+            .map(move |file| Link { line, target: file.trim_end_matches('/').to_owned() })
+            .collect::<Vec<_>>()
+    })
 }
 
 /// Lines with their numbers, without those of fenced code.
@@ -188,6 +207,13 @@ mod tests {
                 "r.md:5: gone.md leads nowhere",
             ]
         );
+    }
+
+    #[test]
+    fn files_named_as_code_must_be_there() {
+        let text = "`crates/a.rs` `crates/gone.rs` `crates/*/x` `cargo run`\n```sh\n`crates/no`\n```\n";
+        let pages = [page("r.md", text), page("crates/a.rs", "")];
+        assert_eq!(faults(&pages), ["r.md:1: crates/gone.rs is not there"]);
     }
 
     #[test]

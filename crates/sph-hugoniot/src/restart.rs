@@ -178,12 +178,14 @@ fn list_names() -> Vec<String> {
 }
 
 fn read_particles(from: &mut Checkpoint<SavedPoint>) -> Result<Particles<Dim2>> {
-    let mut particles = Particles::<Dim2>::default();
-    particles.id = from.take_u64("id")?;
     let material = from.take_u32("material")?;
-    particles.material = material.into_iter().map(u16::try_from).collect::<Result<_, _>>()?;
-    particles.constraint = from.take_u8("constraint")?.into_iter().map(constraint).collect::<Result<_>>()?;
-    particles.failed = from.take_u8("failed")?.into_iter().map(|f| f != 0).collect();
+    let mut particles = Particles::<Dim2> {
+        id: from.take_u64("id")?,
+        material: material.into_iter().map(u16::try_from).collect::<Result<_, _>>()?,
+        constraint: from.take_u8("constraint")?.into_iter().map(constraint).collect::<Result<_>>()?,
+        failed: from.take_u8("failed")?.into_iter().map(|f| f != 0).collect(),
+        ..Default::default()
+    };
     let names: Vec<String> = particles.columns().into_iter().map(|(name, _)| name).collect();
     for (name, column) in names.iter().zip(particles.columns_mut()) {
         *column = from.take_f64(name)?;

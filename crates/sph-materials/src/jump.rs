@@ -48,7 +48,7 @@ pub struct Jump {
 }
 
 /// By how much a jump misses each conservation law, relative to the flux of the conserved quantity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct JumpResiduals {
     /// Of mass [1].
     pub mass: f64,

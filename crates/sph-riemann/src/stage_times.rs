@@ -48,7 +48,7 @@ impl StepStage {
 }
 
 /// Seconds spent in each stage, and rebuilds of the lists.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StageTimes {
     seconds: [f64; 7],
     /// Number of rebuilds of the neighbour lists.

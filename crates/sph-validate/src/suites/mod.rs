@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use sph_core::{Dim2, Domain, Particle, Particles};
 use sph_materials::{Material, library};
-use sph_riemann::{Limiter, Settings, Simulation};
+use sph_riemann::{Settings, Simulation};
 
 use crate::case::{Case, SchemeName, SuiteName, Tier};
 use crate::error::ValidateError;
@@ -110,7 +110,7 @@ pub fn work(case: Case) -> f64 {
         SchemeName::Csph => 0.5,
         SchemeName::TkcMuscl | SchemeName::TkcHancock => 1.0,
     };
-    particles * steps * price / case.scheme.courant()
+    particles * steps * price / case.courant()
 }
 
 /// Runs one case.
@@ -132,8 +132,7 @@ struct Run {
 }
 
 impl Run {
-    /// The solver with the published settings of the scheme. Limiter of the Hancock scheme: monotonized central, the
-    /// one that the published figures were measured with.
+    /// The solver with the settings of the scheme, but for what the case says of Courant number and limiter.
     fn new(
         case: Case,
         domain: Domain<Dim2>,
@@ -143,10 +142,8 @@ impl Run {
     ) -> Result<Self, ValidateError> {
         let mut settings = Settings::for_scheme(case.scheme.scheme());
         settings.smoothing = smoothing;
-        settings.courant = case.scheme.courant();
-        if case.scheme == SchemeName::TkcHancock && case.suite != SuiteName::Verny {
-            settings.limiter = Limiter::MonotonizedCentral;
-        }
+        settings.courant = case.courant();
+        settings.limiter = case.limiter().unwrap_or(settings.limiter);
         if case.scheme != SchemeName::TkcHancock {
             // The published schemes know no volume consistency.
             settings.volume_consistency = None;

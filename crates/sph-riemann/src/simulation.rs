@@ -288,8 +288,8 @@ impl<D: SolidDimension> Simulation<D> {
             return;
         }
         let s = &mut self.scratch;
-        let pass = Pass {
-            kind: PassKind::Centering(self.settings.limiter, &s.delta, &s.centered),
+        let mut pass = Pass {
+            kind: PassKind::Contact(self.settings.limiter),
             lists: &self.lists,
             smoothing: Smoothing::new(self.settings.kernel, self.settings.smoothing, D::COUNT, &s.size),
             surface: self.settings.surface,
@@ -297,10 +297,12 @@ impl<D: SolidDimension> Simulation<D> {
             half_step: 0.0,
             instructions: self.instructions,
         };
+        find_pairs(&pass, &s.moved, &mut s.centered);
+        pass.kind = PassKind::Centering(self.settings.limiter, &s.delta, &s.centered);
         pass.run(&mut [], &mut s.rows);
     }
 
-    /// δ of free particles at free surfaces, and the pairs that see one. False if there is none.
+    /// δ of free particles at free surfaces. False if there is none.
     fn find_deltas(&mut self, time_step: f64) -> bool {
         let s = &mut self.scratch;
         let (n, padded) = (self.lists.n_particles, self.lists.n_padded());
@@ -324,11 +326,7 @@ impl<D: SolidDimension> Simulation<D> {
             s.moved[padded + h] = s.moved[owner as usize];
             s.delta.iter_mut().for_each(|delta| delta[padded + h] = delta[owner as usize]);
         }
-        let any = s.moved[..n].contains(&true);
-        if any {
-            find_pairs(&self.lists, &s.moved, &mut s.centered);
-        }
-        any
+        s.moved[..n].contains(&true)
     }
 
     fn update(&mut self, time_step: f64) -> TileReport {

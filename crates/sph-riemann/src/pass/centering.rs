@@ -15,7 +15,7 @@
 use rayon::prelude::*;
 use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, LaneKernel, Lanes};
-use sph_core::neighbors::{NeighborLists, TILE};
+use sph_core::neighbors::TILE;
 
 use super::contact::Left;
 use super::{Pass, Tile};
@@ -38,9 +38,10 @@ pub struct CenteredPairs {
 }
 
 /// Finds the pairs with δ ≠ 0 on a side; `moved` tells it of each record. One entry of `pairs` a tile.
-pub fn find_pairs<D: SolidDimension>(lists: &NeighborLists<D>, moved: &[bool], pairs: &mut [CenteredPairs]) {
+pub fn find_pairs<D: SolidDimension>(pass: &Pass<'_, D>, moved: &[bool], pairs: &mut [CenteredPairs]) {
+    let n = pass.lists.n_particles;
     pairs.par_iter_mut().enumerate().for_each(|(t, pairs)| {
-        pairs.collect(lists, moved, t * TILE..((t + 1) * TILE).min(lists.n_particles));
+        pairs.collect(pass, moved, t * TILE..((t + 1) * TILE).min(n));
         pairs.pack();
     });
 }
@@ -48,19 +49,26 @@ pub fn find_pairs<D: SolidDimension>(lists: &NeighborLists<D>, moved: &[bool], p
 impl CenteredPairs {
     fn collect<D: SolidDimension>(
         &mut self,
-        lists: &NeighborLists<D>,
+        pass: &Pass<'_, D>,
         moved: &[bool],
         particles: std::ops::Range<usize>,
     ) {
+        // Pairs beyond the support add exact zeros; where h is one number it is cheap to leave them out.
+        let reach = pass.smoothing.uniform_reach().unwrap_or(f64::INFINITY);
+        let place = |record: usize| &pass.records[record * D::SIDES_LINES].0;
+        let within = |i: usize, j: usize| {
+            let (here, there) = (place(i), place(j));
+            (0..D::COUNT).map(|a| (there[a] - here[a]) * (there[a] - here[a])).sum::<f64>() < reach * reach
+        };
         self.own.clear();
         self.others.clear();
         self.found.clear();
         for i in particles {
             let first = self.found.len() as u32;
             let all = moved[i];
-            for slot in lists.block(i / LANES) {
+            for slot in pass.lists.block(i / LANES) {
                 let j = slot[i % LANES];
-                if j as usize != i && (all || moved[j as usize]) {
+                if j as usize != i && (all || moved[j as usize]) && within(i, j as usize) {
                     self.found.push(j);
                 }
             }

@@ -4,7 +4,7 @@
 //!
 //! in m/s, for m = 1.35, two pores of 4.06 µm in a cell of 20 µm, up to about 600 m/s.
 //!
-//! Source: Rublev & Murzov, arXiv 2410.14646, section 5, figure 8.
+//! Source: Rublev & Murzov, arXiv 2410.14646, section 4, figure 8.
 
 use crate::config::case::{Case, Pores};
 

@@ -31,11 +31,10 @@ pub struct CenteredPairs {
     /// First slot of each block, and the end of the last.
     start: Vec<u32>,
     slots: Vec<[u32; LANES]>,
-    /// Particles with such pairs, those with the most first, and where their neighbours stand in `found`.
-    listed: Vec<(u32, u32, u32)>,
+    /// Particles with neighbours in the list, those with δ ≠ 0 first, and where their neighbours stand in `found`.
+    own: Vec<(u32, u32, u32)>,
+    others: Vec<(u32, u32, u32)>,
     found: Vec<u32>,
-    /// Neighbours of each particle of the block at hand.
-    of_lane: [Vec<u32>; LANES],
 }
 
 /// Finds the pairs with δ ≠ 0 on a side; `moved` tells it of each record. One entry of `pairs` a tile.
@@ -61,27 +60,23 @@ impl CenteredPairs {
             let (here, there) = (place(i), place(j));
             (0..D::COUNT).map(|a| (there[a] - here[a]) * (there[a] - here[a])).sum::<f64>() < reach * reach
         };
-        self.listed.clear();
+        self.own.clear();
+        self.others.clear();
         self.found.clear();
-        // Block by block: a slot is read once for its eight particles.
-        for block in particles.start / LANES..particles.end.div_ceil(LANES) {
-            self.of_lane.iter_mut().for_each(Vec::clear);
-            for slot in pass.lists.block(block) {
-                for (l, &j) in slot.iter().enumerate() {
-                    let (i, j) = (block * LANES + l, j as usize);
-                    if (moved[i] || moved[j]) && i != j && within(i, j) {
-                        self.of_lane[l].push(j as u32);
-                    }
+        for i in particles {
+            let first = self.found.len() as u32;
+            let all = moved[i];
+            for slot in pass.lists.block(i / LANES) {
+                let j = slot[i % LANES];
+                if j as usize != i && (all || moved[j as usize]) && within(i, j as usize) {
+                    self.found.push(j);
                 }
             }
-            for (l, listed) in self.of_lane.iter().enumerate().filter(|(_, listed)| !listed.is_empty()) {
-                let (i, first) = (block * LANES + l, self.found.len() as u32);
-                self.found.extend_from_slice(listed);
-                self.listed.push((i as u32, first, self.found.len() as u32));
+            let end = self.found.len() as u32;
+            if end > first {
+                if all { &mut self.own } else { &mut self.others }.push((i as u32, first, end));
             }
         }
-        // Eight of a block should have about as many pairs: lanes without one are worked for nothing.
-        self.listed.sort_unstable_by_key(|&(i, first, end)| (std::cmp::Reverse(end - first), i));
     }
 
     /// Blocks of eight from particles of like numbers of pairs.
@@ -90,10 +85,13 @@ impl CenteredPairs {
         self.slots.clear();
         self.start.clear();
         self.start.push(0);
-        for of_block in self.listed.chunks(LANES) {
-            let last = of_block[of_block.len() - 1];
-            let mut eight = [(last.0, 0, 0); LANES];
-            eight[..of_block.len()].copy_from_slice(of_block);
+        let listed = || self.own.iter().chain(&self.others);
+        let count = self.own.len() + self.others.len();
+        for block in 0..count.div_ceil(LANES) {
+            let mut eight = [(0, 0, 0); LANES];
+            let mut of_block = listed().skip(block * LANES);
+            let last = of_block.clone().take(LANES).last().copied().unwrap_or_default();
+            eight.fill_with(|| of_block.next().copied().unwrap_or((last.0, 0, 0)));
             let longest = eight.iter().map(|(_, first, end)| end - first).max().unwrap_or(0);
             self.members.push(eight.map(|(i, _, _)| i));
             for k in 0..longest {

@@ -64,7 +64,16 @@ pub struct Tile<'a> {
 
 impl<D: SolidDimension> Pass<'_, D> {
     /// Runs the pass over all tiles. `sides` holds the records that the pass writes, or is empty.
+    ///
+    /// # Panics
+    /// If there are fewer records than the lists name: the pair loops read them unchecked.
     pub fn run(&self, sides: &mut [Line], rows: &mut [Line]) {
+        let stride = match self.kind {
+            PassKind::Gradient(_) => D::STATE_LINES,
+            PassKind::Contact(_) | PassKind::PlainContact | PassKind::Centering(..) => D::SIDES_LINES,
+        };
+        let needed = self.lists.n_records() * stride;
+        assert!(self.records.len() >= needed, "{} lines of records, {needed} needed", self.records.len());
         let row_chunk = TILE_BLOCKS * Row::count::<D>();
         let tiles = rows.par_chunks_mut(row_chunk).enumerate();
         if sides.is_empty() {

@@ -1,4 +1,4 @@
-//! What leaves and enters the process: tables, plots, field images, ParaView snapshots, checkpoints, progress.
+//! What leaves and enters the process: tables, plots, field images, ParaView snapshots, reports, checkpoints, progress.
 //!
 //! The crate knows no physics: slices, names and units go in, files come out. Every file is written atomically
 //! ([`atomic`]): whole or not at all. Every error ([`IoError`]) names its path. Folders are not created.
@@ -9,6 +9,7 @@ mod color;
 mod draw;
 mod error;
 pub mod field_image;
+pub mod html;
 pub mod lock;
 pub mod plot;
 pub mod progress;

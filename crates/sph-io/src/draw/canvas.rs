@@ -210,6 +210,11 @@ impl Canvas {
             Anchor::End => -width,
         };
         for run in &runs {
+            // A viewer of SVG drops the spaces that a text begins with.
+            let words = run.text.trim_start_matches(' ');
+            let spaces = run.text[..run.text.len() - words.len()].to_owned();
+            along += Run { text: spaces, ..run.clone() }.width() * place.size;
+            let run = &Run { text: words.to_owned(), ..run.clone() };
             let rise = run.rise * place.size;
             let (x, y) = if place.upward {
                 (place.x - rise, place.y - along)

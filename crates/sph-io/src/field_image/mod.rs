@@ -143,8 +143,14 @@ impl FieldImage {
     /// [`IoError::File`] from the system.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
-        let png = self.check().and_then(|()| layout::draw(self)?.to_png());
-        atomic::write_atomic(path, &png.map_err(|reason| IoError::invalid(path, reason))?)
+        let png = self.to_png().map_err(|reason| IoError::invalid(path, reason))?;
+        atomic::write_atomic(path, &png)
+    }
+
+    /// The picture as PNG; the reason if it cannot be drawn.
+    pub(crate) fn to_png(&self) -> Result<Vec<u8>, String> {
+        self.check()?;
+        layout::draw(self)?.to_png()
     }
 
     fn check(&self) -> Result<(), String> {

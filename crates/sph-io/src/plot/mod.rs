@@ -314,8 +314,14 @@ impl Figure {
     /// [`IoError::Invalid`] for columns of unequal length or an unusable range, [`IoError::File`] from the system.
     pub fn write_svg(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
-        self.check().map_err(|reason| IoError::invalid(path, reason))?;
-        atomic::write_atomic(path, layout::draw(self).into_svg().as_bytes())
+        let svg = self.to_svg().map_err(|reason| IoError::invalid(path, reason))?;
+        atomic::write_atomic(path, svg.as_bytes())
+    }
+
+    /// The figure as SVG; the reason if it cannot be drawn.
+    pub(crate) fn to_svg(&self) -> Result<String, String> {
+        self.check()?;
+        Ok(layout::draw(self).into_svg())
     }
 
     /// Writes the figure as PNG, atomically.

@@ -11,6 +11,8 @@ mod json;
 mod number;
 mod text;
 
+pub(crate) use text::cell;
+
 use crate::{IoError, atomic};
 use std::path::Path;
 

@@ -31,7 +31,8 @@ fn aligned(column: &Column, n_rows: usize) -> Vec<String> {
         .collect()
 }
 
-fn cell(values: &Values, row: usize) -> String {
+/// A value with six significant digits, or as it stands.
+pub(crate) fn cell(values: &Values, row: usize) -> String {
     match values {
         Values::Float(values) => values.get(row).map_or(String::new(), |&value| brief(value)),
         Values::Integer(values) => values.get(row).map_or(String::new(), i64::to_string),

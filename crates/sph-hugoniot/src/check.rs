@@ -84,6 +84,13 @@ impl Check {
         line("results", self.case.output.directory.clone());
         out.push('\n');
         out.push_str(&self.points_text());
+        if let Some(refinement) = &self.case.refinement {
+            let (n, percent) = (refinement.max_points, significant(100.0 * refinement.tolerance));
+            _ = writeln!(
+                out,
+                "more points where the curve bends, to {percent} % of u_s or {n} points; not in the estimates"
+            );
+        }
         let time = duration(self.expected_seconds);
         let memory = significant((self.expected_bytes / 1e5).round() / 10.0);
         _ = writeln!(out, "\nabout {time} on {} core(s), {memory} MB; estimates", self.threads);

@@ -181,7 +181,7 @@ fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions) -> anyho
     if !points.is_empty() {
         points.sort_by(f64::total_cmp);
         points.dedup();
-        case.points = points;
+        (case.points, case.refinement) = (points, None);
     }
     let text = std::fs::read_to_string(path)?;
     if options.folder.as_os_str().is_empty() {

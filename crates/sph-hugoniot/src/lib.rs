@@ -19,6 +19,7 @@ pub mod observe;
 pub mod outcome;
 pub mod point;
 pub mod reference;
+pub mod refine;
 pub mod report;
 pub mod restart;
 pub mod run;

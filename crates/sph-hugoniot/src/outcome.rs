@@ -111,6 +111,15 @@ impl PointOutcome {
         matches!(self.status, Status::Failed(_))
     }
 
+    /// The point as an adaptive sweep sees it.
+    pub fn known(&self) -> crate::refine::Known {
+        crate::refine::Known {
+            particle_velocity: self.particle_velocity,
+            shock_velocity: self.shock_velocity,
+            standard_error: self.standard_error,
+        }
+    }
+
     /// Name of the point's files: `up_0100`, `up_0062.5`.
     pub fn file_stem(&self) -> String {
         file_stem(self.particle_velocity)

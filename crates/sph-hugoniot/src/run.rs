@@ -16,9 +16,10 @@ use crate::estimate;
 use crate::microstructure::{self, Sample};
 use crate::outcome::{PointOutcome, Status};
 use crate::point::Control;
+use crate::refine;
 use crate::report::{Report, earlier, summary};
 use crate::restart::Keeper;
-use crate::sweep::{self, Watch};
+use crate::sweep::{self, Sweep, Watch};
 
 /// How a run is made.
 #[derive(Clone, Debug)]
@@ -75,30 +76,71 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         return Ok(RunEnd::Refused(refusal));
     }
     let report = Report::create(&options.folder, case, case_text)?;
-    let costs: Vec<f64> = case.points.iter().map(|&u| estimate::point(case, &sample, u).seconds).collect();
-    let mode = if options.quiet { Mode::Quiet } else { Mode::Auto };
-    let label = format!("{}, {} points", case.name, case.points.len());
-    let watcher = Watcher {
-        case,
-        sample: &sample,
-        report: &report,
-        interrupt,
-        keep_every: options.keep_every,
-        state: Mutex::new(State {
-            outcomes: case.points.iter().map(|_| None).collect(),
-            parts: vec![0.0; costs.len()],
-            progress: Some(Progress::new(costs.iter().sum(), label, mode)),
-        }),
-        costs: &costs,
-    };
-    sweep::run(case, &sample, &costs, options.threads, &watcher)?;
-    let outcomes = watcher.finish();
+    let outcomes = rounds(case, &sample, &report, options, interrupt)?;
     let finished: Vec<&PointOutcome> = outcomes.iter().collect();
     report.write_curves(case, &sample, &finished)?;
     if !options.quiet {
         print_summary(&finished, report.folder(), started.elapsed().as_secs_f64());
     }
     Ok(end_of(&finished, interrupt))
+}
+
+/// Round after round until no further point is asked for; all outcomes, in the order of u_p.
+fn rounds(
+    case: &Case,
+    sample: &Sample,
+    report: &Report,
+    options: &RunOptions,
+    interrupt: &AtomicBool,
+) -> Result<Vec<PointOutcome>> {
+    let mut finished = Vec::new();
+    let mut points = case.points.clone();
+    while !points.is_empty() {
+        let sweep = Sweep { case, sample, points: &points };
+        finished = round(sweep, finished, report, options, interrupt)?;
+        points = match &case.refinement {
+            Some(refinement) if !interrupt.load(Ordering::Relaxed) => {
+                let known: Vec<refine::Known> = finished.iter().map(PointOutcome::known).collect();
+                refine::next_points(&known, refinement)
+            }
+            _ => Vec::new(),
+        };
+    }
+    Ok(finished)
+}
+
+/// Runs some points; their outcomes together with the earlier ones, in the order of u_p.
+fn round(
+    sweep: Sweep<'_>,
+    earlier: Vec<PointOutcome>,
+    report: &Report,
+    options: &RunOptions,
+    interrupt: &AtomicBool,
+) -> Result<Vec<PointOutcome>> {
+    let cost = |&u: &f64| estimate::point(sweep.case, sweep.sample, u).seconds;
+    let costs: Vec<f64> = sweep.points.iter().map(cost).collect();
+    let mode = if options.quiet { Mode::Quiet } else { Mode::Auto };
+    let more = if earlier.is_empty() { "" } else { "more " };
+    let label = format!("{}, {} {more}points", sweep.case.name, sweep.points.len());
+    let watcher = Watcher {
+        sweep,
+        earlier: &earlier,
+        report,
+        interrupt,
+        keep_every: options.keep_every,
+        state: Mutex::new(State {
+            outcomes: sweep.points.iter().map(|_| None).collect(),
+            parts: vec![0.0; costs.len()],
+            progress: Some(Progress::new(costs.iter().sum(), label, mode)),
+        }),
+        costs: &costs,
+    };
+    sweep::run(sweep, &costs, options.threads, &watcher)?;
+    let new = watcher.finish();
+    let mut all = earlier;
+    all.extend(new);
+    all.sort_by(|a, b| a.particle_velocity.total_cmp(&b.particle_velocity));
+    Ok(all)
 }
 
 fn end_of(outcomes: &[&PointOutcome], interrupt: &AtomicBool) -> RunEnd {
@@ -127,8 +169,9 @@ fn print_summary(outcomes: &[&PointOutcome], folder: &Path, seconds: f64) {
 
 /// Keeps the state of a sweep and what is shown of it.
 struct Watcher<'r> {
-    case: &'r Case,
-    sample: &'r Sample,
+    sweep: Sweep<'r>,
+    /// Outcomes of earlier rounds.
+    earlier: &'r [PointOutcome],
     report: &'r Report,
     interrupt: &'r AtomicBool,
     keep_every: Duration,
@@ -180,7 +223,7 @@ impl Watch for Watcher<'_> {
     }
 
     fn keeper(&self, index: usize) -> Result<Option<Keeper>> {
-        let folder = self.report.point_folder(self.case.points[index]);
+        let folder = self.report.point_folder(self.sweep.points[index]);
         Keeper::new(&folder, self.keep_every).map(Some)
     }
 
@@ -189,7 +232,7 @@ impl Watch for Watcher<'_> {
     }
 
     fn finished(&self, index: usize, outcome: PointOutcome) -> Result<()> {
-        self.report.write_point(self.case, &outcome)?;
+        self.report.write_point(self.sweep.case, &outcome)?;
         let line = summary::line(&outcome);
         match outcome.status {
             Status::Failed(_) => eprintln!("{line}"),
@@ -197,8 +240,9 @@ impl Watch for Watcher<'_> {
         }
         let mut state = self.state();
         state.outcomes[index] = Some(outcome);
-        let finished: Vec<&PointOutcome> = state.outcomes.iter().flatten().collect();
-        self.report.write_table(self.case, self.sample, &finished)?;
+        let mut finished: Vec<&PointOutcome> = state.outcomes.iter().flatten().chain(self.earlier).collect();
+        finished.sort_by(|a, b| a.particle_velocity.total_cmp(&b.particle_velocity));
+        self.report.write_table(self.sweep.case, self.sweep.sample, &finished)?;
         drop(state);
         self.show(index, 1.0, "");
         Ok(())
@@ -216,7 +260,7 @@ impl Control for PointControl<'_> {
     }
 
     fn progress(&self, swept_cells: f64, expected_cells: f64) {
-        let u_p = self.watcher.case.points[self.index];
+        let u_p = self.watcher.sweep.points[self.index];
         let message = format!("u_p = {u_p} m/s, cell {swept_cells:.0} of {expected_cells:.0}");
         self.watcher.show(self.index, swept_cells / expected_cells, &message);
     }

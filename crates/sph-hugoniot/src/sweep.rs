@@ -1,4 +1,4 @@
-//! All points of a case, side by side on the cores.
+//! Points of a case, side by side on the cores.
 //!
 //! As many points run at once as there are cores; each has its own pool of threads, so that a point never waits for
 //! another. With at least as many points as cores every point runs on one thread; with fewer the cores are shared out.
@@ -29,16 +29,21 @@ pub trait Watch: Sync {
     fn finished(&self, index: usize, outcome: PointOutcome) -> anyhow::Result<()>;
 }
 
-/// Runs the points; returns the first error of what keeps and shows them.
-pub fn run(
-    case: &Case,
-    sample: &Sample,
-    costs: &[f64],
-    threads: usize,
-    watch: &dyn Watch,
-) -> anyhow::Result<()> {
+/// What is run: some points of a case.
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep<'c> {
+    /// The case.
+    pub case: &'c Case,
+    /// Its sample.
+    pub sample: &'c Sample,
+    /// u_p of the points [m/s]; indices are places in this list.
+    pub points: &'c [f64],
+}
+
+/// Runs the points, `costs` being the times expected of each; returns the first error of what keeps and shows them.
+pub fn run(sweep: Sweep<'_>, costs: &[f64], threads: usize, watch: &dyn Watch) -> anyhow::Result<()> {
     let order = by_falling_cost(costs);
-    let workers = threads.clamp(1, case.points.len().max(1));
+    let workers = threads.clamp(1, sweep.points.len().max(1));
     let next = AtomicUsize::new(0);
     let error = Mutex::new(None);
     std::thread::scope(|scope| {
@@ -46,7 +51,7 @@ pub fn run(
             let share = threads_of(worker, workers, threads);
             let (order, next, error) = (&order, &next, &error);
             scope.spawn(move || {
-                if let Err(e) = work(case, sample, order, next, share, watch, error) {
+                if let Err(e) = work(sweep, order, next, share, watch, error) {
                     lock(error).get_or_insert(e);
                 }
             });
@@ -57,8 +62,7 @@ pub fn run(
 
 /// Takes points from the queue until it is empty, the sweep is interrupted, or it has failed.
 fn work(
-    case: &Case,
-    sample: &Sample,
+    sweep: Sweep<'_>,
     order: &[usize],
     next: &AtomicUsize,
     threads: usize,
@@ -72,8 +76,9 @@ fn work(
         }
         let control = watch.control(index);
         let keeper = watch.keeper(index)?;
-        let u_p = case.points[index];
-        let outcome = pool.install(|| point::run_kept(case, sample, u_p, control.as_ref(), keeper))?;
+        let Sweep { case, sample, points } = sweep;
+        let outcome =
+            pool.install(|| point::run_kept(case, sample, points[index], control.as_ref(), keeper))?;
         let guard = lock(error);
         if guard.is_none() {
             watch.finished(index, outcome)?;

@@ -1,6 +1,6 @@
 //! Shut-pore jump conditions of porous copper, snow-plow, and the measured curve of pressed copper powder.
 
-use sph_materials::porous::{CompactionCurve, PorousMedium, Precursor, ShearBehind};
+use sph_materials::porous::{CompactionCurve, CrushCurve, PorousMedium, Precursor, ShearBehind};
 use sph_materials::{HugoniotError, Material, library};
 
 fn copper() -> Material {
@@ -108,4 +108,22 @@ fn powder_at_high_stress_agrees_with_shut_pores() {
         wave.wave_speed,
         same.wave_speed
     );
+}
+
+/// Once a crush curve has ended the pores are shut, and the jump conditions of shut pores hold to the last digits.
+#[test]
+fn a_crush_curve_ends_at_the_jump_conditions_of_shut_pores() {
+    let curve = CrushCurve::quadratic(0.15e9, 0.8e9, 1.3514).unwrap();
+    let crushed = CompactionCurve::crush(medium(1.3514, 0.20e9), curve, 5e9).unwrap();
+    for (u_p, lower, _) in RANGES.into_iter().skip(1) {
+        let wave = crushed.wave(u_p).unwrap();
+        assert!((wave.shock_velocity() - lower).abs() < 0.051, "{u_p}: {} {lower}", wave.shock_velocity());
+    }
+    // Below, the medium behind is lighter: mass conservation puts u_s above the shut-pore curve.
+    let (open, shut) =
+        (crushed.wave(75.0).unwrap(), medium(1.3514, 0.20e9).shut_pores(75.0, ShearBehind::None));
+    assert!(open.shock_velocity() > 1.05 * shut.unwrap().shock_velocity(), "{open:?}");
+    assert!(open.residuals().worst() < 1e-9, "{:?}", open.residuals());
+    let alpha = curve.distension(-open.behind.longitudinal_stress);
+    assert!(alpha > 1.01 && (8960.0 / open.behind.density / alpha - 1.0).abs() < 0.005, "{alpha}");
 }

@@ -1,5 +1,7 @@
 //! A case: everything that a run needs, checked, in SI.
 
+use std::path::PathBuf;
+
 use serde::Serialize;
 use sph_materials::Material;
 use sph_riemann::Settings;
@@ -18,12 +20,39 @@ pub struct Case {
     pub scheme: Settings,
     /// The moving window.
     pub window: WindowCase,
-    /// Particle velocities u_p [m/s], rising.
+    /// Particle velocities u_p [m/s], rising; with a refinement those of the first round.
     pub points: Vec<f64>,
+    /// How further points are chosen from finished ones; `None`: there are no further ones.
+    pub refinement: Option<Refinement>,
     /// When a point has settled.
     pub stop: Stop,
+    /// Measured curves to lay beside the computed one.
+    pub data: Vec<DataSource>,
     /// What is written.
     pub output: Output,
+}
+
+/// When points are added between finished ones ([`crate::refine`]).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Refinement {
+    /// Relative error of linear interpolation of u_s between neighbors [-].
+    pub tolerance: f64,
+    /// Points at most.
+    pub max_points: usize,
+}
+
+/// A measured curve.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub enum DataSource {
+    /// Pressed copper powder: the compaction curve of Boade (1970).
+    Boade1970,
+    /// Points from a CSV file.
+    Csv {
+        /// The file.
+        file: PathBuf,
+        /// Name in the legend, if given.
+        name: Option<String>,
+    },
 }
 
 /// Cell, pores and particles.

@@ -10,6 +10,7 @@ pub mod field;
 pub mod node;
 pub mod resolve;
 mod resolve_material;
+mod resolve_points;
 mod resolve_scheme;
 pub mod schema;
 pub mod syntax;
@@ -43,7 +44,14 @@ pub fn load(path: &Path) -> Result<Case, CaseError> {
     let bytes = std::fs::read(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
     let text =
         String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}")))?;
-    parse(&text, &shown)
+    let mut case = parse(&text, &shown)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for source in &mut case.data {
+        if let case::DataSource::Csv { file, .. } = source {
+            *file = folder.join(&*file);
+        }
+    }
+    Ok(case)
 }
 
 /// Reads a case from text; `path` stands in the messages.

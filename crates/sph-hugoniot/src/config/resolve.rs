@@ -24,10 +24,12 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, faults: &Faults) -> Option<Cas
         schema.medium.required("medium", whole, faults).and_then(|m| r.medium(m, &span_of(&schema.medium)));
     let points =
         schema.points.required("points", whole, faults).and_then(|p| r.points(p, &span_of(&schema.points)));
+    let data = r.data(&schema.data);
     let scheme = r.group(&schema.scheme, |s| r.scheme(s));
     let window = r.group(&schema.window, |w| r.window(w));
     let stop = r.group(&schema.stop, |s| r.stop(s));
     let output = r.group(&schema.output, |o| r.output(o, name.as_deref()));
+    let (points, refinement) = points.unzip();
     if let (Some(medium), Some(window), Some(points)) = (&medium, &window, &points) {
         r.window_fits(schema, medium, window, points);
     }
@@ -41,13 +43,15 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, faults: &Faults) -> Option<Cas
         scheme: scheme?,
         window: window?,
         points: points?,
+        refinement: refinement?,
         stop: stop?,
+        data: data?,
         output: output?,
     };
     faults.is_empty().then_some(case)
 }
 
-fn span_of<T>(field: &Field<T>) -> Span {
+pub(super) fn span_of<T>(field: &Field<T>) -> Span {
     field.span().unwrap_or(0..0)
 }
 
@@ -244,33 +248,6 @@ impl Resolver<'_> {
             return None;
         }
         Some((pores, radius))
-    }
-
-    fn points(&self, list: &[Field<Quantity<super::units::VelocityKind>>], group: &Span) -> Option<Vec<f64>> {
-        if list.is_empty() || list.len() > 1000 {
-            self.refuse(
-                group.clone(),
-                format!("{} points", list.len()),
-                "from 1 to 1000, such as [\"50 m/s\", \"100 m/s\"]",
-            );
-            return None;
-        }
-        let mut points: Vec<f64> = Vec::new();
-        for field in list {
-            let Some(velocity) = self.quantity(field, PARTICLE_VELOCITIES.0, PARTICLE_VELOCITIES.1) else {
-                continue;
-            };
-            match points.contains(&velocity) {
-                true => self.refuse(
-                    span_of(field),
-                    format!("{velocity} m/s is listed twice"),
-                    "list each point once",
-                ),
-                false => points.push(velocity),
-            }
-        }
-        points.sort_by(f64::total_cmp);
-        (!points.is_empty()).then_some(points)
     }
 
     fn stop(&self, s: &StopSchema) -> Option<Stop> {

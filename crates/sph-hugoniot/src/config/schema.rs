@@ -25,11 +25,73 @@ pub struct CaseSchema {
     /// The moving window.
     pub window: Field<WindowSchema>,
     /// Particle velocities u_p.
-    pub points: Field<Vec<Field<Velocity>>>,
+    pub points: Field<PointsSchema>,
     /// When a point has settled.
     pub stop: Field<StopSchema>,
+    /// Measured curves to lay beside the computed one.
+    pub data: Field<Vec<Field<DataSchema>>>,
     /// What is written.
     pub output: Field<OutputSchema>,
+}
+
+/// Particle velocities u_p; a plain list `[…]` is read as `List`.
+#[derive(Debug, Deserialize)]
+pub enum PointsSchema {
+    /// Each of them.
+    List(Vec<Field<Velocity>>),
+    /// Evenly spaced.
+    Range(RangeSchema),
+    /// Evenly spaced at first, then where the curve bends.
+    Adaptive(AdaptiveSchema),
+}
+
+/// Evenly spaced u_p: either a step or a count.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RangeSchema {
+    /// Least u_p.
+    pub from: Field<Velocity>,
+    /// Greatest u_p.
+    pub to: Field<Velocity>,
+    /// Distance of neighbors.
+    pub step: Field<Velocity>,
+    /// Number of points, both ends included.
+    pub count: Field<Count>,
+}
+
+/// u_p that are added where the curve bends.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AdaptiveSchema {
+    /// Least u_p.
+    pub from: Field<Velocity>,
+    /// Greatest u_p.
+    pub to: Field<Velocity>,
+    /// Relative error of linear interpolation of u_s between neighbors.
+    pub tolerance: Field<Number>,
+    /// Points at most, the initial ones included.
+    pub max_points: Field<Count>,
+    /// Evenly spaced points at the start.
+    pub initial_points: Field<Count>,
+}
+
+/// A measured curve.
+#[derive(Debug, Deserialize)]
+pub enum DataSchema {
+    /// Pressed copper powder of Boade (1970).
+    Boade1970,
+    /// Points from a CSV file.
+    Csv(CsvSchema),
+}
+
+/// Points from a CSV file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CsvSchema {
+    /// The file; relative to the case file's folder.
+    pub file: Field<String>,
+    /// Name in the legend; without it the source column or the file's name.
+    pub name: Field<String>,
 }
 
 /// The solid: from the library, with changes, or in full.

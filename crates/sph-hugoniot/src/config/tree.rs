@@ -51,6 +51,9 @@ impl TreeError {
     }
 }
 
+/// Name of the variant that a plain list `[…]` is read as, in enums that have it.
+const LIST: &str = "List";
+
 /// Reads a whole tree; faults are noted, `None` when the outermost value does not fit.
 pub fn read<T: for<'de> Deserialize<'de>>(node: &Node, faults: &Faults) -> Option<T> {
     T::deserialize(Tree { node, faults, named: false })
@@ -173,10 +176,16 @@ impl<'de> Deserializer<'de> for Tree<'_> {
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, TreeError> {
+        // A plain list may stand for the variant of that name.
+        if matches!(self.node.value, Value::List(_)) && variants.contains(&LIST) {
+            return visitor.visit_enum(Choice { tree: self, name: LIST });
+        }
         let (Value::Name(name) | Value::Struct(Some(name), _) | Value::Tuple(Some(name), _)) =
             &self.node.value
         else {
-            return Err(self.unexpected(&format!("one of {}", backticked(variants))));
+            let (lists, names): (Vec<&str>, Vec<&str>) = variants.iter().partition(|v| **v == LIST);
+            let list = if lists.is_empty() { "" } else { "a list `[…]`, or " };
+            return Err(self.unexpected(&format!("{list}one of {}", backticked(&names))));
         };
         if !variants.contains(&name.as_str()) {
             let span = self.node.span.start..self.node.span.start + name.len();

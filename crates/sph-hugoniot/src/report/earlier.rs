@@ -9,7 +9,7 @@ use crate::config::Case;
 use crate::run::Earlier;
 
 /// Parts of a case that may differ when a run goes on: which points, and what is drawn of them.
-const FREE: [&str; 3] = ["points", "output", "name"];
+const FREE: [&str; 5] = ["points", "refinement", "data", "output", "name"];
 
 /// Makes the folder ready; the reason if the run must not start.
 ///

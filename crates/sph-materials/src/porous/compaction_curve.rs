@@ -1,4 +1,6 @@
-//! A measured compaction curve \\( \alpha(P) \\), turned into u_s(u_p) by the jump conditions.
+//! A compaction curve \\( \alpha(P) \\), turned into u_s(u_p) by the jump conditions.
+//!
+//! Two forms: a [`CrushCurve`], and the one that was measured on pressed copper powder,
 //!
 //! \\[ \alpha(P) = 1 + (\alpha_1 - 1)\, e^{-a (P - P_1)}, \qquad \alpha = \rho_s/\rho \\]
 //!
@@ -9,7 +11,8 @@
 //! \\( V = \alpha/\rho_s \\), and \\( P(\rho_s, e) = P \\) of the solid's own equation of state (strengthless)
 //! closes the set; then \\( u_s - u_1 = V_1 \sqrt{(P - P_1)/(V_1 - V)} \\).
 //!
-//! Velocities are relative to the undisturbed medium, as they are measured.
+//! Velocities are relative to the undisturbed medium, as they are measured; behind a standing precursor, to the
+//! matter at rest there.
 //!
 //! # Validity
 //!
@@ -21,7 +24,7 @@
 //! R. R. Boade, "Principal Hugoniot, second-shock Hugoniot, and release behavior of pressed copper powder", J.
 //! Appl. Phys. 41 (1970) 4542-4551. Form of P(ρ, e, α): W. Herrmann, J. Appl. Phys. 40 (1969) 2490-2499.
 
-use super::{PorousMedium, Precursor};
+use super::{CrushCurve, PorousMedium, Precursor};
 use crate::error::HugoniotError;
 use crate::hugoniot::check_piston;
 use crate::jump::{Jump, ShockState};
@@ -31,13 +34,21 @@ use crate::root::turning_point;
 /// A kilobar [Pa].
 const KILOBAR: f64 = 1e8;
 
-/// An exponential compaction curve behind a precursor.
+/// Form of a compaction curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Form {
+    /// Exponential decay behind the precursor [1/Pa].
+    Exponential(f64),
+    /// A crush curve.
+    Crush(CrushCurve),
+}
+
+/// A compaction curve behind a precursor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompactionCurve {
     medium: PorousMedium,
     precursor: ShockState,
-    precursor_speed: f64,
-    decay: f64,
+    form: Form,
     greatest_stress: f64,
 }
 
@@ -69,17 +80,34 @@ impl CompactionCurve {
         if !(decay.is_finite() && decay >= 0.0) {
             return Err(HugoniotError::BadNumber { field: "decay", value: decay, unit: "1/Pa", least: 0.0 });
         }
-        if !(greatest_stress.is_finite() && greatest_stress > stress) {
-            let value = greatest_stress;
+        Self::with_form(medium, Form::Exponential(decay), greatest_stress)
+    }
+
+    /// A medium that follows a crush curve, up to a greatest stress [Pa].
+    ///
+    /// # Errors
+    ///
+    /// Numbers that make no curve; an end that does not exceed the stress of the precursor.
+    pub fn crush(
+        medium: PorousMedium,
+        curve: CrushCurve,
+        greatest_stress: f64,
+    ) -> Result<Self, HugoniotError> {
+        curve.check()?;
+        Self::with_form(medium, Form::Crush(curve), greatest_stress)
+    }
+
+    fn with_form(medium: PorousMedium, form: Form, greatest_stress: f64) -> Result<Self, HugoniotError> {
+        let precursor = medium.state_ahead();
+        if !(greatest_stress.is_finite() && greatest_stress > precursor.pressure) {
             return Err(HugoniotError::BadNumber {
                 field: "greatest_stress",
-                value,
+                value: greatest_stress,
                 unit: "Pa",
-                least: stress,
+                least: precursor.pressure,
             });
         }
-        let precursor = medium.state_ahead();
-        Ok(Self { medium, precursor, precursor_speed: speed, decay, greatest_stress })
+        Ok(Self { medium, precursor, form, greatest_stress })
     }
 
     /// Distension \\( \alpha_1 \\) behind the precursor [1].
@@ -90,7 +118,13 @@ impl CompactionCurve {
 
     /// Distension \\( \alpha \\) behind the main wave at a stress [Pa] within the data [1].
     pub fn distension(&self, stress: f64) -> f64 {
-        1.0 + (self.precursor_distension() - 1.0) * (-self.decay * (stress - self.precursor.pressure)).exp()
+        match self.form {
+            Form::Crush(curve) => curve.distension(stress),
+            Form::Exponential(decay) => {
+                let left = (-decay * (stress - self.precursor.pressure)).exp();
+                1.0 + (self.precursor_distension() - 1.0) * left
+            }
+        }
     }
 
     /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that
@@ -155,11 +189,6 @@ impl CompactionCurve {
         let least_stress = self.precursor.pressure * (1.0 + 1e-12);
         let stress = turning_point(least_stress, self.greatest_stress, |p| velocity(p) >= piston_velocity);
         self.wave_of_stress(stress)
-    }
-
-    /// Speed of the precursor in the undisturbed medium [m/s].
-    pub fn precursor_speed(&self) -> f64 {
-        self.precursor_speed
     }
 
     /// State behind the precursor.

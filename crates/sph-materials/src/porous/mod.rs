@@ -2,7 +2,7 @@
 //!
 //! * [`PorousMedium::shut_pores`]: the medium compacts wholly, to its own solid's equation of state;
 //! * [`PorousMedium::snow_plow`]: the same with an incompressible solid;
-//! * [`CompactionCurve`]: partial compaction along a measured curve \\( \alpha(P) \\).
+//! * [`CompactionCurve`]: partial compaction along a curve \\( \alpha(P) \\), measured or a [`CrushCurve`].
 //!
 //! # Shut pores
 //!
@@ -59,8 +59,10 @@
 //! Phenomena, ch. XI.
 
 mod compaction_curve;
+mod crush_curve;
 
 pub use compaction_curve::CompactionCurve;
+pub use crush_curve::CrushCurve;
 
 use crate::error::HugoniotError;
 use crate::hugoniot::check_piston;

@@ -113,7 +113,10 @@ impl Resolver<'_> {
         match data {
             Field::Absent => Some(Vec::new()),
             Field::Bad(_) => None,
-            Field::Good(list, _) => list.iter().map(|source| self.data_source(source)).collect(),
+            Field::Good(list, _) => {
+                let sources: Vec<Option<DataSource>> = list.iter().map(|s| self.data_source(s)).collect();
+                sources.into_iter().collect()
+            }
         }
     }
 

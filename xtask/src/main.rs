@@ -4,6 +4,7 @@
 
 mod docs;
 mod files;
+mod health;
 mod process;
 mod tidy;
 mod validate;
@@ -26,6 +27,8 @@ enum Task {
     Validate(validate::Arguments),
     /// Hold the sources against the rules of the house: dependencies, module docs, paths, prints, sizes.
     Tidy,
+    /// Look at what a release needs: licenses, packages; with --full a dry run, oldest dependencies, interfaces.
+    Health(health::Arguments),
     /// Build rustdoc with warnings denied, check the links of all Markdown files, build the guide.
     Docs,
 }
@@ -34,6 +37,7 @@ fn main() -> anyhow::Result<ExitCode> {
     match Arguments::parse().task {
         Task::Validate(arguments) => validate::run(&arguments),
         Task::Tidy => tidy::run(),
+        Task::Health(arguments) => health::run(&arguments),
         Task::Docs => docs::run(),
     }
 }

@@ -15,6 +15,8 @@ use crate::{check, config, restart, template};
 
 /// Everything went well.
 pub const SUCCESS: u8 = 0;
+/// A file could not be read or written: full disk, no permission; what was kept before stands.
+pub const FILE_TROUBLE: u8 = 1;
 /// The input is wrong: nothing was run.
 pub const BAD_INPUT: u8 = 2;
 /// At least one point failed; what was computed is kept.
@@ -188,10 +190,14 @@ fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions) -> anyho
         options.folder = PathBuf::from(&case.output.directory);
     }
     let interrupt = stop_on_interrupt()?;
-    let end = run::run(&case, &text, &options, &interrupt)?;
+    let out = options.folder.display();
+    let go_on = format!("hugoniot run {} --out {out} --resume", path.display());
+    // What was kept before stands, also where a file could not be written: the way on is the same.
+    let end = run::run(&case, &text, &options, &interrupt).map_err(|error| {
+        error.context(format!("the run has stopped (once this is mended, go on with: {go_on})"))
+    })?;
     if end == RunEnd::Interrupted {
-        let out = options.folder.display();
-        eprintln!("stopped; go on with: hugoniot run {} --out {out} --resume", path.display());
+        eprintln!("stopped; go on with: {go_on}");
     }
     Ok(match end {
         RunEnd::Refused(reason) => {

@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum IoError {
     /// The operating system refused.
-    #[error("{}: cannot {action}: {source}", path.display())]
+    #[error("{}: cannot {action}: {cause}", path.display())]
     File {
         /// File or folder that was asked for.
         path: PathBuf,
         /// What was tried, as a verb with its object.
         action: &'static str,
-        /// The system's own message.
-        source: io::Error,
+        /// The system's own message; it stands in the sentence, so it is no further source of the error.
+        cause: io::Error,
     },
     /// What the caller wants written does not fit together, so nothing was written.
     #[error("{}: nothing written: {reason}", path.display())]
@@ -65,7 +65,7 @@ impl IoError {
     /// Wraps a system error; for `map_err`.
     pub(crate) fn file(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_path_buf();
-        move |source| Self::File { path, action, source }
+        move |cause| Self::File { path, action, cause }
     }
 
     pub(crate) fn invalid(path: &Path, reason: impl Into<String>) -> Self {

@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             eprintln!("error: {error:#}");
-            ExitCode::from(cli::BAD_INPUT)
+            ExitCode::from(cli::FILE_TROUBLE)
         }
     }
 }

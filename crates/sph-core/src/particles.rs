@@ -52,6 +52,8 @@ pub struct Particle<D: Dimension> {
     pub relative_speed: f64,
     /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
     pub packing_excess: f64,
+    /// Volume over the volume without the voids that tension has opened [-]; 1 where none has.
+    pub distension: f64,
 }
 
 impl<D: Dimension> Particle<D> {
@@ -72,6 +74,7 @@ impl<D: Dimension> Particle<D> {
             plastic_strain: 0.0,
             relative_speed: 0.0,
             packing_excess: 0.0,
+            distension: 1.0,
         }
     }
 }
@@ -107,6 +110,8 @@ pub struct Particles<D: Dimension> {
     pub relative_speed: Vec<f64>,
     /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
     pub packing_excess: Vec<f64>,
+    /// Volume over the volume without the voids that tension has opened [-]; 1 where none has.
+    pub distension: Vec<f64>,
 }
 
 impl<D: Dimension> Default for Particles<D> {
@@ -126,6 +131,7 @@ impl<D: Dimension> Default for Particles<D> {
             plastic_strain: Vec::new(),
             relative_speed: Vec::new(),
             packing_excess: Vec::new(),
+            distension: Vec::new(),
         }
     }
 }
@@ -161,6 +167,7 @@ impl<D: Dimension> Particles<D> {
         self.plastic_strain.push(p.plastic_strain);
         self.relative_speed.push(p.relative_speed);
         self.packing_excess.push(p.packing_excess);
+        self.distension.push(p.distension);
     }
 
     /// A copy of particle `i`.
@@ -180,6 +187,7 @@ impl<D: Dimension> Particles<D> {
             plastic_strain: self.plastic_strain[i],
             relative_speed: self.relative_speed[i],
             packing_excess: self.packing_excess[i],
+            distension: self.distension[i],
         }
     }
 
@@ -215,6 +223,7 @@ impl<D: Dimension> Particles<D> {
         list.push(("plastic_strain".to_string(), &self.plastic_strain));
         list.push(("relative_speed".to_string(), &self.relative_speed));
         list.push(("packing_excess".to_string(), &self.packing_excess));
+        list.push(("distension".to_string(), &self.distension));
         list
     }
 
@@ -226,6 +235,7 @@ impl<D: Dimension> Particles<D> {
         list.extend([&mut self.mass, &mut self.size, &mut self.density, &mut self.specific_internal_energy]);
         list.extend(self.deviator.as_mut());
         list.extend([&mut self.plastic_strain, &mut self.relative_speed, &mut self.packing_excess]);
+        list.push(&mut self.distension);
         list
     }
 
@@ -272,6 +282,7 @@ mod tests {
             plastic_strain: 0.0,
             relative_speed: x,
             packing_excess: -x,
+            distension: 1.0 + x,
         }
     }
 

@@ -16,7 +16,7 @@
 //! | [`material`] | the whole material: reference density and one choice of each model |
 //! | [`eos`] | \\( P(\rho, e) \\) and the exact sound speed of each equation of state |
 //! | [`strength`] | elasticity, von Mises yield, return to the yield surface |
-//! | [`failure`] | what happens when the tensile strength is passed |
+//! | [`failure`] | what happens when the tensile strength is passed: cut-off or growth of voids |
 //! | [`spin`] | how a stress deviator turns with the matter (Jaumann rate) |
 //! | [`sound`] | which sound speed a contact between particles uses |
 //! | [`jump`] | states on both sides of a shock, and the residuals of its three conservation laws |
@@ -54,7 +54,7 @@ pub mod strength;
 
 pub use eos::EquationOfState;
 pub use error::{HugoniotError, LibraryError, MaterialError};
-pub use failure::{Failure, TensileState};
+pub use failure::{Damage, Failure, TensileState, VoidGrowth};
 pub use jump::{Jump, ShockState};
 pub use material::Material;
 pub use sound::SoundSpeedModel;

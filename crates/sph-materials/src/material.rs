@@ -5,7 +5,7 @@
 
 use crate::eos::{EquationOfState, Parameter};
 use crate::error::MaterialError;
-use crate::failure::Failure;
+use crate::failure::{Damage, Failure, TensileState};
 use crate::sound::{SoundSpeedModel, THERMODYNAMIC_FLOOR};
 use crate::strength::Strength;
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,25 @@ impl Material {
     #[inline]
     pub fn pressure(&self, density: f64, specific_internal_energy: f64) -> f64 {
         self.equation_of_state.pressure(self.reference_density, density, specific_internal_energy)
+    }
+
+    /// Pressure [Pa] that a point carries with what it remembers of tension.
+    #[inline]
+    pub fn pressure_with(&self, damage: Damage, density: f64, specific_internal_energy: f64) -> f64 {
+        self.failure.pressure(damage, density, |rho| self.pressure(rho, specific_internal_energy))
+    }
+
+    /// Failure, voids and pressure at the end of a step of `time_step` [s].
+    #[inline]
+    pub fn advance_failure(
+        &self,
+        damage: Damage,
+        density: f64,
+        specific_internal_energy: f64,
+        time_step: f64,
+    ) -> TensileState {
+        self.failure
+            .advance(damage, density, time_step, |rho| self.pressure(rho, specific_internal_energy))
     }
 
     /// Bulk sound speed \\( c_b \\) [m/s] by the material's model, see [`crate::sound`].

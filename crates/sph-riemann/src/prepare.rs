@@ -5,7 +5,7 @@ use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, Line};
 use sph_core::neighbors::{TILE, TILE_BLOCKS};
 use sph_core::particles::{Constraint, Particles};
-use sph_materials::Material;
+use sph_materials::{Damage, Material};
 
 use crate::dimension::SolidDimension;
 use crate::record::{Row, Sides, State};
@@ -14,8 +14,8 @@ use crate::record::{Row, Sides, State};
 #[inline]
 pub fn pressure<D: SolidDimension>(particles: &Particles<D>, materials: &[Material], i: usize) -> f64 {
     let material = &materials[particles.material[i] as usize];
-    let pressure = material.pressure(particles.density[i], particles.specific_internal_energy[i]);
-    material.failure.apply(particles.failed[i], pressure).pressure
+    let damage = Damage { failed: particles.failed[i], distension: particles.distension[i] };
+    material.pressure_with(damage, particles.density[i], particles.specific_internal_energy[i])
 }
 
 /// Fills the records of the first pass and the rows that the material gives, tile by tile.
@@ -75,7 +75,8 @@ fn particle<D: SolidDimension>(
         let stress = particles.deviator[stored][i] - if k < D::COUNT { pressure } else { 0.0 };
         put(State::fields::<D>() + D::COUNT + k, stress);
     }
-    let bulk_speed = material.bulk_sound_speed(density, energy);
+    // Of the solid between voids.
+    let bulk_speed = material.bulk_sound_speed(density * particles.distension[i], energy);
     let bulk_modulus = density * bulk_speed * bulk_speed;
     let shear = if particles.failed[i] { 0.0 } else { material.strength.shear_modulus() };
     let evolves = particles.constraint[i] != Constraint::Frozen;

@@ -17,7 +17,7 @@ use sph_core::lanes::{LANES, Line};
 use sph_core::neighbors::{TILE, TILE_BLOCKS};
 use sph_core::particles::{Constraint, Particles};
 use sph_core::tiles::TiledColumn;
-use sph_materials::Material;
+use sph_materials::{Damage, Material};
 
 use crate::dimension::{SolidDimension, symmetric};
 use crate::error::{Stage, StepError};
@@ -54,6 +54,7 @@ struct Columns<'a, D: Dimension> {
     plastic_strain: TiledColumn<'a, f64>,
     relative_speed: TiledColumn<'a, f64>,
     failed: TiledColumn<'a, bool>,
+    distension: TiledColumn<'a, f64>,
 }
 
 /// What the update of one particle reads besides its own state.
@@ -86,6 +87,7 @@ pub fn update<D: SolidDimension>(
         plastic_strain: TiledColumn::new(&mut particles.plastic_strain),
         relative_speed: TiledColumn::new(&mut particles.relative_speed),
         failed: TiledColumn::new(&mut particles.failed),
+        distension: TiledColumn::new(&mut particles.distension),
     };
     let context = Context { materials, settings, time_step };
     let fixed = Fixed {
@@ -125,6 +127,7 @@ struct TileColumns<'a, D: Dimension> {
     plastic_strain: &'a mut [f64],
     relative_speed: &'a mut [f64],
     failed: &'a mut [bool],
+    distension: &'a mut [f64],
     dimension: std::marker::PhantomData<D>,
 }
 
@@ -149,6 +152,7 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
                 plastic_strain: columns.plastic_strain.tile(t),
                 relative_speed: columns.relative_speed.tile(t),
                 failed: columns.failed.tile(t),
+                distension: columns.distension.tile(t),
                 dimension: std::marker::PhantomData,
             }
         }
@@ -208,11 +212,12 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
             row(Row::PRESSURE) * fixed.mass[i] * inverse_density * relaxation.abs() * tau;
         self.energy[k] += energy_change - kinetic;
         self.advance_deviator(k, &gradient, material, tau);
-        let state =
-            material.failure.apply(self.failed[k], material.pressure(self.density[k], self.energy[k]));
-        self.failed[k] = state.failed;
-        if state.failed {
-            self.deviator.iter_mut().take(D::TENSOR_COUNT).for_each(|s| s[k] = 0.0);
+        let damage = Damage { failed: self.failed[k], distension: self.distension[k] };
+        let state = material.advance_failure(damage, self.density[k], self.energy[k], tau);
+        self.failed[k] = state.damage.failed;
+        self.distension[k] = state.damage.distension;
+        if state.strength_left < 1.0 {
+            self.soften(k, state.strength_left, material);
         }
         // One sum finds what is not finite anywhere.
         let all = self.density[k]
@@ -225,6 +230,20 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
         {
             report.broken = Some(i as u32);
         }
+    }
+
+    /// Brings the deviator back to what is left of the yield surface after failure.
+    #[cold]
+    fn soften(&mut self, k: usize, strength_left: f64, material: &Material) {
+        let s: [f64; 6] = std::array::from_fn(|c| if c < D::TENSOR_COUNT { self.deviator[c][k] } else { 0.0 });
+        let twice = |c: usize| if D::TENSOR_AXES[c].0 == D::TENSOR_AXES[c].1 { 1.0 } else { 2.0 };
+        let invariant: f64 = (0..D::TENSOR_COUNT).map(|c| twice(c) * s[c] * s[c]).sum();
+        // Yield at the share f of Y: at S:S/f² of the whole surface.
+        let factor = match strength_left {
+            0.0 => 0.0,
+            share => material.strength.return_factor(invariant / (share * share)),
+        };
+        self.deviator.iter_mut().take(D::TENSOR_COUNT).for_each(|s| s[k] *= factor);
     }
 
     /// Elastic trial, rotation, return to the yield surface; equivalent plastic strain (σ_vM - Y)/(3 G).

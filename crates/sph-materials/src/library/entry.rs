@@ -2,7 +2,7 @@
 
 use crate::eos::{EquationOfState, Linear, LinearGamma, Logarithmic, MieGruneisen};
 use crate::error::LibraryError;
-use crate::failure::Failure;
+use crate::failure::{Failure, VoidGrowth};
 use crate::material::Material;
 use crate::sound::SoundSpeedModel;
 use crate::strength::Strength;
@@ -87,7 +87,15 @@ enum StrengthText {
 #[serde(deny_unknown_fields)]
 enum FailureText {
     None,
-    TensileCutoff { tensile_strength: NumberText },
+    TensileCutoff {
+        tensile_strength: NumberText,
+    },
+    VoidGrowth {
+        tensile_strength: NumberText,
+        initial_distension: NumberText,
+        viscosity: NumberText,
+        coalescence_porosity: NumberText,
+    },
 }
 
 /// What a number measures: a name for messages and the known units with their SI factors.
@@ -100,6 +108,7 @@ const DENSITY: Quantity = Quantity { dimension: "density", units: &[("kg/m³", 1
 const PRESSURE: Quantity =
     Quantity { dimension: "pressure", units: &[("Pa", 1.0), ("MPa", 1e6), ("GPa", 1e9)] };
 const VELOCITY: Quantity = Quantity { dimension: "velocity", units: &[("m/s", 1.0), ("km/s", 1e3)] };
+const VISCOSITY: Quantity = Quantity { dimension: "viscosity", units: &[("Pa s", 1.0)] };
 const PURE: Quantity = Quantity { dimension: "pure number", units: &[("1", 1.0)] };
 
 /// Turns the numbers of one entry into SI and remembers them.
@@ -193,6 +202,17 @@ impl Reader<'_> {
             FailureText::TensileCutoff { tensile_strength } => Failure::TensileCutoff {
                 tensile_strength: self.si("tensile_strength", tensile_strength, &PRESSURE)?,
             },
+            FailureText::VoidGrowth {
+                tensile_strength,
+                initial_distension,
+                viscosity,
+                coalescence_porosity,
+            } => Failure::VoidGrowth(VoidGrowth {
+                tensile_strength: self.si("tensile_strength", tensile_strength, &PRESSURE)?,
+                initial_distension: self.si("initial_distension", initial_distension, &PURE)?,
+                viscosity: self.si("viscosity", viscosity, &VISCOSITY)?,
+                coalescence_porosity: self.si("coalescence_porosity", coalescence_porosity, &PURE)?,
+            }),
         })
     }
 }

@@ -50,8 +50,7 @@ impl Material {
         specific_internal_energy: f64,
         time_step: f64,
     ) -> TensileState {
-        self.failure
-            .advance(damage, density, time_step, |rho| self.pressure(rho, specific_internal_energy))
+        self.failure.advance(damage, density, time_step, |rho| self.pressure(rho, specific_internal_energy))
     }
 
     /// Bulk sound speed \\( c_b \\) [m/s] by the material's model, see [`crate::sound`].

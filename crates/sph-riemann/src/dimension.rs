@@ -33,6 +33,10 @@ pub trait SolidDimension: Dimension {
     const STATE_LINES: usize;
     /// Cache lines of a record of the second pass.
     const SIDES_LINES: usize;
+    /// Cache lines of a face record.
+    const FACE_LINES: usize;
+    /// A face record in registers.
+    type FaceRecord<T: Value>: Components<T> + Value;
     /// A record of the first pass in registers.
     type StateRecord<T: Value>: Components<T> + Value;
     /// A record of the second pass in registers.
@@ -121,6 +125,8 @@ impl SolidDimension for Dim2 {
     const SPIN_COUNT: usize = 1;
     const STATE_LINES: usize = 1;
     const SIDES_LINES: usize = 3;
+    const FACE_LINES: usize = 1;
+    type FaceRecord<T: Value> = [T; 8];
     type StateRecord<T: Value> = [T; 8];
     type SidesRecord<T: Value> = [T; 24];
     type Symmetric<T: Value> = [T; 3];
@@ -163,6 +169,8 @@ impl SolidDimension for Dim3 {
     const SPIN_COUNT: usize = 3;
     const STATE_LINES: usize = 2;
     const SIDES_LINES: usize = 7;
+    const FACE_LINES: usize = 2;
+    type FaceRecord<T: Value> = [T; 16];
     type StateRecord<T: Value> = [T; 16];
     type SidesRecord<T: Value> = [T; 56];
     type Symmetric<T: Value> = [T; 6];

@@ -48,7 +48,7 @@ pub use dimension::SolidDimension;
 pub use error::{SetupError, StepError};
 pub use limiter::Limiter;
 pub use restart::Clock;
-pub use scheme::{Scheme, Settings, SurfaceTreatment, VolumeConsistency};
+pub use scheme::{FaceClosure, Scheme, Settings, SurfaceTreatment, VolumeConsistency};
 pub use simulation::{Simulation, StepReport, Totals};
 pub use stage_times::{StageTimes, StepStage};
 pub use time_step::TimeStepReason;

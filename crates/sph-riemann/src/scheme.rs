@@ -84,6 +84,20 @@ impl Default for VolumeConsistency {
     }
 }
 
+/// How the faces between particles are closed on disordered clouds; see [`crate::pass`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FaceClosure {
+    /// Jacobi sweeps in a step.
+    pub sweeps: u32,
+}
+
+impl Default for FaceClosure {
+    fn default() -> Self {
+        Self { sweeps: 10 }
+    }
+}
+
 /// All settings of the scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -104,6 +118,9 @@ pub struct Settings {
     pub skin: f64,
     /// Keeps the density at that of the packing, or not.
     pub volume_consistency: Option<VolumeConsistency>,
+    /// Closes the faces between particles, or not: for disordered clouds; on lattices it only costs.
+    #[serde(default)]
+    pub face_closure: Option<FaceClosure>,
 }
 
 impl Settings {
@@ -126,6 +143,7 @@ impl Settings {
             surface,
             skin: 0.2,
             volume_consistency: Some(VolumeConsistency::default()),
+            face_closure: None,
         }
     }
 
@@ -158,6 +176,13 @@ impl Settings {
                 within(v.void_deficit, 1e-3, 1.0),
                 format!("void_deficit = {} is outside 0.001 to 1", v.void_deficit),
             );
+        }
+        if let Some(FaceClosure { sweeps }) = self.face_closure {
+            check(
+                (1..=1000).contains(&sweeps),
+                format!("{sweeps} sweeps of the closure are outside 1 to 1000"),
+            );
+            check(self.scheme.reconstructs(), "closed faces need a scheme with corrected kernel".into());
         }
         faults
     }

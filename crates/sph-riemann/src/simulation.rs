@@ -20,7 +20,7 @@ use crate::error::{SetupError, StepError};
 use crate::pass::{CenteredPairs, Pass, PassKind, Smoothing, find_pairs};
 use crate::record::Row;
 use crate::restart::Clock;
-use crate::scheme::{Scheme, Settings, SurfaceTreatment};
+use crate::scheme::{FaceClosure, Scheme, Settings, SurfaceTreatment};
 use crate::stage_times::{StageTimes, StepStage};
 use crate::time_step::{TimeStepReason, courant_step, signal_speed};
 use crate::update::{TileReport, first_broken, update};
@@ -54,6 +54,7 @@ struct Scratch {
     rows: Vec<Line>,
     size: Vec<f64>,
     rule: Vec<f64>,
+    faces: [Vec<Line>; 2],
     delta: Vec<Vec<f64>>,
     moved: Vec<bool>,
     centered: Vec<CenteredPairs>,
@@ -279,6 +280,9 @@ impl<D: SolidDimension> Simulation<D> {
             instructions: self.instructions,
         };
         pass.run(&mut [], &mut self.scratch.rows);
+        if let Some(FaceClosure { sweeps }) = self.settings.face_closure {
+            pass.close_faces(sweeps, &mut self.scratch.faces, &mut self.scratch.rows);
+        }
     }
 
     /// The half step of the velocity follows the true acceleration near free surfaces.

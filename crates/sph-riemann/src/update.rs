@@ -235,7 +235,8 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
     /// Brings the deviator back to what is left of the yield surface after failure.
     #[cold]
     fn soften(&mut self, k: usize, strength_left: f64, material: &Material) {
-        let s: [f64; 6] = std::array::from_fn(|c| if c < D::TENSOR_COUNT { self.deviator[c][k] } else { 0.0 });
+        let s: [f64; 6] =
+            std::array::from_fn(|c| if c < D::TENSOR_COUNT { self.deviator[c][k] } else { 0.0 });
         let twice = |c: usize| if D::TENSOR_AXES[c].0 == D::TENSOR_AXES[c].1 { 1.0 } else { 2.0 };
         let invariant: f64 = (0..D::TENSOR_COUNT).map(|c| twice(c) * s[c] * s[c]).sum();
         // Yield at the share f of Y: at S:S/f² of the whole surface.

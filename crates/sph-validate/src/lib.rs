@@ -19,6 +19,7 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod case;
+pub mod disorder;
 pub mod error;
 pub mod gate;
 pub mod metric;

@@ -4,6 +4,7 @@
 //! gathers its own sums from its own list, in the order of the list: the same bits for any number of threads.
 
 mod centering;
+mod closure;
 mod contact;
 mod gradient;
 mod smoothing;
@@ -18,6 +19,7 @@ use crate::limiter::Limiter;
 use crate::record::Row;
 use crate::scheme::SurfaceTreatment;
 pub use centering::{CenteredPairs, find_pairs};
+pub use closure::ClosureStage;
 pub use smoothing::Smoothing;
 
 /// A pass and all that it reads.
@@ -50,6 +52,8 @@ pub enum PassKind<'a> {
     PlainContact,
     /// Corrects power and velocity gradients for the true acceleration, from δ by axis, over the listed pairs.
     Centering(Limiter, &'a [Vec<f64>], &'a [CenteredPairs]),
+    /// A stage of the closure of faces; see [`Pass::close_faces`].
+    Closure(ClosureStage<'a>),
 }
 
 /// What a pass writes in one tile.
@@ -68,11 +72,7 @@ impl<D: SolidDimension> Pass<'_, D> {
     /// # Panics
     /// If there are fewer records than the lists name: the pair loops read them unchecked.
     pub fn run(&self, sides: &mut [Line], rows: &mut [Line]) {
-        let stride = match self.kind {
-            PassKind::Gradient(_) => D::STATE_LINES,
-            PassKind::Contact(_) | PassKind::PlainContact | PassKind::Centering(..) => D::SIDES_LINES,
-        };
-        let needed = self.lists.n_records() * stride;
+        let needed = self.lists.n_records() * self.stride();
         assert!(self.records.len() >= needed, "{} lines of records, {needed} needed", self.records.len());
         let row_chunk = TILE_BLOCKS * Row::count::<D>();
         let tiles = rows.par_chunks_mut(row_chunk).enumerate();
@@ -83,6 +83,18 @@ impl<D: SolidDimension> Pass<'_, D> {
             tiles
                 .zip(own.par_chunks_mut(TILE * D::SIDES_LINES))
                 .for_each(|((index, rows), sides)| D::run(self, Tile { index, sides, rows }));
+        }
+    }
+
+    /// Lines of a record that the pass reads.
+    fn stride(&self) -> usize {
+        match self.kind {
+            PassKind::Gradient(_) => D::STATE_LINES,
+            PassKind::Closure(ClosureStage::Sweep) => D::FACE_LINES,
+            PassKind::Contact(_)
+            | PassKind::PlainContact
+            | PassKind::Centering(..)
+            | PassKind::Closure(ClosureStage::Gaps | ClosureStage::Forces(_)) => D::SIDES_LINES,
         }
     }
 
@@ -103,6 +115,9 @@ impl<D: SolidDimension> Pass<'_, D> {
             PassKind::Centering(limiter, delta, pairs) => {
                 let pairs = &pairs[tile.index];
                 dispatch_with(set, centering::CenteringTile { pass: self, tile, limiter, delta, pairs });
+            }
+            PassKind::Closure(stage) => {
+                dispatch_with(set, closure::ClosureTile { pass: self, tile, stage });
             }
         }
     }

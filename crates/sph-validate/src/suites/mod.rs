@@ -199,7 +199,7 @@ fn energies(simulation: &Simulation<Dim2>) -> [f64; 2] {
 }
 
 /// A named material of the library.
-fn material(name: &str) -> Result<Material, ValidateError> {
+pub(crate) fn material(name: &str) -> Result<Material, ValidateError> {
     library::material(name).map_err(|error| ValidateError::Material(error.to_string()))
 }
 

@@ -22,21 +22,21 @@ use crate::reference::riemann::{Release, Solid, Solution, State, solve};
 pub const LENGTH: f64 = 0.05;
 /// Time of the comparison [s].
 pub const DURATION: f64 = 2e-6;
-const SMOOTHING: f64 = 0.5;
-const ROWS: u32 = 6;
-const FROZEN_LAYERS: u32 = 5;
+pub(crate) const SMOOTHING: f64 = 0.5;
+pub(crate) const ROWS: u32 = 6;
+pub(crate) const FROZEN_LAYERS: u32 = 5;
 /// Stress of the left state [Pa].
 const LEFT_STRESS: f64 = -4e9;
 
 /// The problem: its solid, its two states and its solution.
-struct Problem {
+pub(crate) struct Problem {
     left: State,
     right: State,
-    solution: Solution,
+    pub(crate) solution: Solution,
 }
 
 impl Problem {
-    fn new(material: &Material) -> Result<Self, ValidateError> {
+    pub(crate) fn new(material: &Material) -> Result<Self, ValidateError> {
         let EquationOfState::Logarithmic(law) = &material.equation_of_state else {
             return Err(ValidateError::Material(
                 "the exact solution needs a logarithmic equation of state".into(),
@@ -78,7 +78,7 @@ pub fn reference_curve() -> Result<Vec<(f64, f64)>, ValidateError> {
     Ok(places.map(|x| (1e3 * x, 1e-9 * solution.sample(x / DURATION).stress)).collect())
 }
 
-fn particles(n: u32, problem: &Problem) -> Particles<Dim2> {
+pub(crate) fn particles(n: u32, problem: &Problem) -> Particles<Dim2> {
     let size = LENGTH / f64::from(n);
     let mut particles = Particles::default();
     for column in 0..n + 2 * FROZEN_LAYERS {

@@ -1,0 +1,288 @@
+//! Closed faces: the area vectors of the pairs of a particle sum up to zero.
+//!
+//! The force between two particles is that of their contact's stress on a face of area vector
+//! `A_ij = V_i w_ij ½(K_i + K_j) e_ij`, antisymmetric in i and j. On a lattice the faces of a particle close,
+//! `Σ_j A_ij = 0`; on a disordered cloud they leave a gap, and a uniform stress accelerates the particle by stress times
+//! gap: an error that does not fall with the resolution. The faces are closed by the least change that is antisymmetric,
+//!
+//! ```text
+//! A'_ij = A_ij + V_i w_ij (λ_i - λ_j)            w_ij = 2 V_j |W'_ij| / h_ij
+//! Σ_j w_ij (λ_i - λ_j) = -g_i                    g_i = Σ_j w_ij ½(K_i + K_j) e_ij: a Laplacian on the pairs
+//! ```
+//!
+//! least in `Σ |A' - A|² / (V_i w_ij)`. λ = 0 where λ_min(L) < 0.75: at a free surface the faces do not close, nor should
+//! they. The system is solved by a fixed number of Jacobi sweeps from zero, so nothing is remembered and the bits are the
+//! same for any number of threads. The change of the faces then carries the mean stress and works with the mean velocity
+//! of both sides,
+//!
+//! ```text
+//! f_i += Σ_j w_ij ½(σ_i + σ_j)·(λ_i - λ_j)       p_i += Σ_j w_ij (½(σ_i + σ_j)·(λ_i - λ_j))·½(U_i + U_j)
+//! ```
+//!
+//! antisymmetric again: momentum and total energy stay exact. On a lattice λ is zero up to rounding.
+//!
+//! A face record: position, volume, λ, g, and 1/Σ_j w_ij (zero where λ is held at zero).
+//!
+//! Source: this project. The exact closure of face areas is what finite-volume particle methods are built on: D. Hietel,
+//! K. Steiner & J. Struckmeier, Math. Models Methods Appl. Sci. 10 (2000) 1363.
+
+use rayon::prelude::*;
+use sph_core::dimension::Components;
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
+use sph_core::neighbors::{TILE, TILE_BLOCKS};
+
+use super::{Pass, PassKind, Tile, load_line, own_indices, store_records};
+use crate::dimension::{SolidDimension, dot, times};
+use crate::record::{Row, Sides};
+
+/// Below this eigenvalue of L a particle is at a free surface.
+const SURFACE_EIGENVALUE: f64 = 0.75;
+/// Share of the Jacobi correction that a sweep takes: damps the modes that would change sign.
+const RELAXATION: f64 = 0.9;
+
+/// Offsets in a face record.
+pub(crate) struct Face;
+
+impl Face {
+    const fn volume<D: SolidDimension>() -> usize {
+        D::COUNT
+    }
+    const fn shift<D: SolidDimension>() -> usize {
+        D::COUNT + 1
+    }
+    const fn gap<D: SolidDimension>() -> usize {
+        2 * D::COUNT + 1
+    }
+    const fn inverse_weight<D: SolidDimension>() -> usize {
+        3 * D::COUNT + 1
+    }
+}
+
+/// Which part of the closure a pass does.
+#[derive(Clone, Copy)]
+pub enum ClosureStage<'a> {
+    /// Gaps from the records of the second pass; the first sweep with them.
+    Gaps,
+    /// One more sweep, from face records.
+    Sweep,
+    /// Forces and power, from the records of the second pass and these face records.
+    Forces(&'a [Line]),
+}
+
+impl<D: SolidDimension> Pass<'_, D> {
+    /// Closes the faces with `sweeps` Jacobi sweeps and adds force and power to the rows. `faces` is scratch for two face
+    /// records a particle and copy; `self` is the contact pass.
+    pub fn close_faces(&self, sweeps: u32, faces: &mut [Vec<Line>; 2], rows: &mut [Line]) {
+        let (stride, padded) = (D::FACE_LINES, self.lists.n_padded());
+        faces.iter_mut().for_each(|f| f.resize(self.lists.n_records() * stride, Line::default()));
+        let [mut new, mut old] = faces.each_mut().map(Vec::as_mut_slice);
+        self.stage(ClosureStage::Gaps, self.records).write_faces(new, rows);
+        self.lists.halo.refresh(new, stride, padded);
+        for _ in 1..sweeps {
+            std::mem::swap(&mut new, &mut old);
+            self.stage(ClosureStage::Sweep, old).write_faces(new, rows);
+            self.lists.halo.refresh(new, stride, padded);
+        }
+        self.stage(ClosureStage::Forces(new), self.records).run(&mut [], rows);
+    }
+
+    fn stage<'a>(&'a self, stage: ClosureStage<'a>, records: &'a [Line]) -> Pass<'a, D> {
+        Pass { kind: PassKind::Closure(stage), records, ..*self }
+    }
+
+    /// Runs a pass that writes face records.
+    fn write_faces(&self, faces: &mut [Line], rows: &mut [Line]) {
+        assert!(self.records.len() >= self.lists.n_records() * self.stride(), "records of every particle");
+        let own = &mut faces[..self.lists.n_padded() * D::FACE_LINES];
+        rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>())
+            .zip(own.par_chunks_mut(TILE * D::FACE_LINES))
+            .enumerate()
+            .for_each(|(index, (rows, sides))| D::run(self, Tile { index, sides, rows }));
+    }
+}
+
+/// The pass over one tile.
+pub(super) struct ClosureTile<'a, 'b, D: SolidDimension> {
+    pub pass: &'a Pass<'b, D>,
+    pub tile: Tile<'a>,
+    pub stage: ClosureStage<'a>,
+}
+
+impl<D: SolidDimension> LaneKernel for ClosureTile<'_, '_, D> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { pass, tile, stage } = self;
+        let lists = pass.tile_lists(tile.index);
+        let row_blocks = tile.rows.chunks_exact_mut(Row::count::<D>());
+        let mut faces = tile.sides.chunks_exact_mut(LANES * D::FACE_LINES);
+        for (b, rows) in row_blocks.enumerate() {
+            let own = own_indices(tile.index * TILE_BLOCKS + b);
+            let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
+            let block = Block { pass, own: &own, slots };
+            match (stage, faces.next()) {
+                (ClosureStage::Gaps, Some(faces)) => block.gaps::<L>(rows, faces),
+                (ClosureStage::Sweep, Some(faces)) => block.sweep::<L>(faces),
+                (ClosureStage::Forces(of), _) => block.forces::<L>(of, rows),
+                (_, None) => unreachable!("face records of every block are written"),
+            }
+        }
+    }
+}
+
+/// Eight particles and their neighbours.
+struct Block<'a, 'b, D: SolidDimension> {
+    pass: &'a Pass<'b, D>,
+    own: &'a [u32; LANES],
+    slots: &'a [[u32; LANES]],
+}
+
+impl<D: SolidDimension> Block<'_, '_, D> {
+    /// w, and the vector to the neighbour, of eight pairs.
+    #[inline(always)]
+    fn weight<L: Lanes>(
+        &self,
+        own: &impl Components<L>,
+        other: &impl Components<L>,
+        slot: &[u32; LANES],
+    ) -> (L, D::Axes<L>) {
+        let mut dx = D::Axes::<L>::splat(L::zero());
+        for a in 0..D::COUNT {
+            dx[a] = other[a] - own[a];
+        }
+        let smoothing = self.pass.smoothing;
+        let scales = smoothing.scales(smoothing.own::<L>(self.own), slot);
+        let r = dot::<D, L>(&dx, &dx).sqrt();
+        let volume = other[Face::volume::<D>()];
+        let q = r * scales.inverse_h;
+        ((volume + volume) * scales.slope * smoothing.minus_slope_over_q(q) * r, dx)
+    }
+
+    #[inline(always)]
+    fn load_sides<L: Lanes>(&self, slot: &[u32; LANES]) -> D::SidesRecord<L> {
+        let mut record = D::SidesRecord::<L>::splat(L::zero());
+        // The correction is the last that is read.
+        for line in 0..(Sides::slopes::<D>() - 1) / LANES + 1 {
+            // SAFETY: entries of a list are below `n_records`, and the caller has checked the records.
+            unsafe { load_line(&mut record, self.pass.records, D::SIDES_LINES, line, slot) };
+        }
+        record
+    }
+
+    /// K e for eight records.
+    #[inline(always)]
+    fn corrected<L: Lanes>(record: &D::SidesRecord<L>, e: &D::Axes<L>) -> D::Axes<L> {
+        let mut k = D::Symmetric::<L>::splat(L::zero());
+        for c in 0..D::STRESS_COUNT {
+            k[c] = record[Sides::correction::<D>() + c];
+        }
+        times::<D, L>(&k, e)
+    }
+
+    #[inline(always)]
+    fn gaps<L: Lanes>(&self, rows: &[Line], faces: &mut [Line]) {
+        let own = self.load_sides::<L>(self.own);
+        let mut gap = D::Axes::<L>::splat(L::zero());
+        let mut sum = L::zero();
+        for slot in self.slots {
+            let other = self.load_sides::<L>(slot);
+            let (w, dx) = self.weight::<L>(&own, &other, slot);
+            // Twice w over r: e is not needed by itself.
+            let (left, right) = (Self::corrected(&own, &dx), Self::corrected(&other, &dx));
+            let r = dot::<D, L>(&dx, &dx).sqrt().max(L::splat(f64::MIN_POSITIVE));
+            let half = L::splat(0.5) * w / r;
+            for a in 0..D::COUNT {
+                gap[a] = half.mul_add(left[a] + right[a], gap[a]);
+            }
+            sum += w;
+        }
+        let inverse = L::one() / sum.max(L::splat(f64::MIN_POSITIVE));
+        let inside = L::load(&rows[Row::LEAST_EIGENVALUE].0);
+        let inverse = inside.select_less(L::splat(SURFACE_EIGENVALUE), L::zero(), inverse);
+        let mut face = D::FaceRecord::<L>::splat(L::zero());
+        for k in 0..=Face::volume::<D>() {
+            face[k] = own[k];
+        }
+        for a in 0..D::COUNT {
+            face[Face::gap::<D>() + a] = gap[a];
+            face[Face::shift::<D>() + a] = -(L::splat(RELAXATION) * gap[a] * inverse);
+        }
+        face[Face::inverse_weight::<D>()] = inverse;
+        store_records(&face, faces, D::FACE_LINES);
+    }
+
+    /// λ ← λ + ω (Σ w (λ_j - λ_i) - g)/Σ w.
+    #[inline(always)]
+    fn sweep<L: Lanes>(&self, faces: &mut [Line]) {
+        let mut own = D::FaceRecord::<L>::splat(L::zero());
+        for line in 0..D::FACE_LINES {
+            // SAFETY: particles have records.
+            unsafe { load_line(&mut own, self.pass.records, D::FACE_LINES, line, self.own) };
+        }
+        let mut sum = D::Axes::<L>::splat(L::zero());
+        for slot in self.slots {
+            let mut other = D::FaceRecord::<L>::splat(L::zero());
+            // SAFETY: entries of a list are below `n_records`, and the caller has checked the records.
+            unsafe { load_line(&mut other, self.pass.records, D::FACE_LINES, 0, slot) };
+            let (w, _) = self.weight::<L>(&own, &other, slot);
+            for a in 0..D::COUNT {
+                let k = Face::shift::<D>() + a;
+                sum[a] = w.mul_add(other[k] - own[k], sum[a]);
+            }
+        }
+        let share = L::splat(RELAXATION) * own[Face::inverse_weight::<D>()];
+        for a in 0..D::COUNT {
+            let k = Face::shift::<D>() + a;
+            own[k] = share.mul_add(sum[a] - own[Face::gap::<D>() + a], own[k]);
+        }
+        store_records(&own, faces, D::FACE_LINES);
+    }
+
+    #[inline(always)]
+    fn forces<L: Lanes>(&self, faces: &[Line], rows: &mut [Line]) {
+        let own = self.load_sides::<L>(self.own);
+        let shift = self.load_shift::<L>(faces, self.own);
+        let mut force = D::Axes::<L>::splat(L::zero());
+        let mut power = L::zero();
+        let (half, first) = (L::splat(0.5), Sides::fields::<D>());
+        for slot in self.slots {
+            let other = self.load_sides::<L>(slot);
+            let other_shift = self.load_shift::<L>(faces, slot);
+            let (w, _) = self.weight::<L>(&own, &other, slot);
+            let mut stress = D::Symmetric::<L>::splat(L::zero());
+            for k in 0..D::STRESS_COUNT {
+                stress[k] = half * (own[first + D::COUNT + k] + other[first + D::COUNT + k]);
+            }
+            let (mut area, mut velocity) = (shift, shift);
+            for a in 0..D::COUNT {
+                area[a] = w * (shift[a] - other_shift[a]);
+                velocity[a] = half * (own[first + a] + other[first + a]);
+            }
+            let of_pair = times::<D, L>(&stress, &area);
+            power += dot::<D, L>(&of_pair, &velocity);
+            for a in 0..D::COUNT {
+                force[a] += of_pair[a];
+            }
+        }
+        add(&mut rows[Row::POWER], power);
+        for a in 0..D::COUNT {
+            add(&mut rows[Row::FORCE + a], force[a]);
+        }
+    }
+
+    #[inline(always)]
+    fn load_shift<L: Lanes>(&self, faces: &[Line], slot: &[u32; LANES]) -> D::Axes<L> {
+        let mut face = D::FaceRecord::<L>::splat(L::zero());
+        // SAFETY: entries of a list are below `n_records`, and `close_faces` made a face record for each.
+        unsafe { load_line(&mut face, faces, D::FACE_LINES, 0, slot) };
+        let mut shift = D::Axes::<L>::splat(L::zero());
+        for a in 0..D::COUNT {
+            shift[a] = face[Face::shift::<D>() + a];
+        }
+        shift
+    }
+}
+
+#[inline(always)]
+fn add<L: Lanes>(row: &mut Line, sum: L) {
+    (L::load(&row.0) + sum).store(&mut row.0);
+}

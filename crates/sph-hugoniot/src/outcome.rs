@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 use sph_materials::jump::JumpResiduals;
 use sph_riemann::StageTimes;
 
+use crate::film::Frame;
+use crate::monitor::{MonitorRow, Worst, worst};
 use crate::observe::{Bin, Fields, States};
 
 /// How a point ended.
@@ -67,6 +69,10 @@ pub struct PointOutcome {
     pub profile: Vec<Bin>,
     /// The last moment.
     pub fields: Fields,
+    /// What was watched, a row for each cell that the front swept.
+    pub monitors: Vec<MonitorRow>,
+    /// Moments of the front after start-up.
+    pub film: Vec<Frame>,
     /// Time by stage of the solver.
     pub stages: StageTimes,
     /// How it ended.
@@ -95,6 +101,8 @@ impl PointOutcome {
             cell_velocities: Vec::new(),
             profile: Vec::new(),
             fields: Fields::default(),
+            monitors: Vec::new(),
+            film: Vec::new(),
             stages: StageTimes::default(),
             status: Status::Failed(reason),
             wall_seconds: 0.0,
@@ -104,6 +112,11 @@ impl PointOutcome {
     /// Particles advanced in a second [1/s].
     pub fn particle_steps_per_second(&self) -> f64 {
         self.particle_steps as f64 / self.wall_seconds
+    }
+
+    /// The worst of what was watched; `None` if the front swept no cell.
+    pub fn worst(&self) -> Option<Worst> {
+        worst(&self.monitors)
     }
 
     /// True when the solver or the window could not go on.

@@ -19,7 +19,10 @@ use sph_core::Dim2;
 use sph_window::{Observation, Window, WindowError};
 
 use crate::config::Case;
+use crate::failure;
+use crate::film::Film;
 use crate::microstructure::Sample;
+use crate::monitor::{FrontView, Monitors};
 use crate::observe::{Fields, FrontProfile, ProfileGrid, States};
 use crate::outcome::{PointOutcome, Status};
 use crate::restart::Keeper;
@@ -110,6 +113,10 @@ pub struct PointProgress {
     blocks_from: Option<f64>,
     /// One profile for each block; the last one is under way.
     profiles: Vec<FrontProfile>,
+    /// What is watched.
+    monitors: Monitors,
+    /// Moments of the front.
+    film: Film,
     /// Time that earlier runs took [s].
     seconds: f64,
 }
@@ -138,8 +145,14 @@ impl<'c> Point<'c> {
                 return Ok(Status::Interrupted);
             }
             let observation = match self.window.step() {
-                Ok(report) => report.observation,
-                Err(error) => return Ok(Status::Failed(error.to_string())),
+                Ok(report) => {
+                    self.progress.monitors.step(&report.step);
+                    report.observation
+                }
+                Err(error) => {
+                    let folder = keeper.as_ref().map(Keeper::folder);
+                    return Ok(Status::Failed(failure::explain(&self.window, &error, self.case, folder)));
+                }
             };
             let Some(observation) = observation else { continue };
             let status = self.look(&observation);
@@ -154,6 +167,7 @@ impl<'c> Point<'c> {
     fn look(&mut self, now: &Observation) -> Option<Status> {
         let before = self.progress.last_look.replace(*now).unwrap_or(*now);
         self.smooth_front(now, &before);
+        self.record(now.swept);
         if self.progress.blocks_from.is_none() && self.startup_is_over() {
             tracing::info!(
                 u_p = self.particle_velocity,
@@ -185,6 +199,22 @@ impl<'c> Point<'c> {
         let swept = (now.swept - before.swept) / self.sample.cell;
         self.progress.mean_front +=
             (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.progress.mean_front);
+    }
+
+    /// Watches, and films the front once start-up is over.
+    fn record(&mut self, swept: f64) {
+        let (sample, front) = (self.sample, self.progress.mean_front);
+        let view = FrontView {
+            front,
+            swept,
+            cell: sample.cell,
+            particle_size: self.case.medium.particle_size,
+            bulk_density: sample.bulk_density(),
+        };
+        self.progress.monitors.look(&self.window, &view);
+        if self.progress.blocks_from.is_some() {
+            self.progress.film.look(&self.window, front, swept, sample.cell);
+        }
     }
 
     fn new_profile(&self) -> FrontProfile {
@@ -284,6 +314,8 @@ impl<'c> Point<'c> {
                 .collect(),
             profile: profile.map(|p| p.bins()).unwrap_or_default(),
             fields: Fields::of(window),
+            monitors: self.progress.monitors.rows().to_vec(),
+            film: self.progress.film.frames().to_vec(),
             stages: *simulation.stage_times(),
             status,
             wall_seconds: 0.0,

@@ -54,6 +54,11 @@ impl Keeper {
         Ok(Self { folder: folder.to_path_buf(), store, interval, last: Instant::now() })
     }
 
+    /// Where the point is kept.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     fn outcome_path(&self) -> PathBuf {
         self.folder.join("outcome.ckpt")
     }

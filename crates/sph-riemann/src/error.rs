@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::time_step::TimeStepReason;
+
 /// A set-up that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SetupError {
@@ -80,8 +82,8 @@ pub enum StepError {
     /// A particle has a density, energy or stress that cannot be.
     #[error(
         "particle {particle} at {} is broken after {stage} at t = {time:.6e} s: density {density:.6e} kg/m3, \
-         specific internal energy {specific_internal_energy:.6e} J/kg; hint: a smaller Courant number, or a tensile \
-         failure model",
+         specific internal energy {specific_internal_energy:.6e} J/kg; the step was {time_step:.3e} s long ({reason}); \
+         hint: a smaller Courant number, or a tensile failure model",
         place(.position)
     )]
     Broken {
@@ -93,6 +95,10 @@ pub enum StepError {
         stage: Stage,
         /// Time at the end of the step [s].
         time: f64,
+        /// Length of the step [s].
+        time_step: f64,
+        /// Why it was as long.
+        reason: TimeStepReason,
         /// Density [kg/m³].
         density: f64,
         /// Specific internal energy [J/kg].

@@ -17,7 +17,7 @@
 //! | [`pass`] | pair loops in lanes: gradients and half step, contacts, time-centring |
 //! | [`prepare`], [`update`] | equations of state before the pair loops, the state at the end of the step after them |
 //! | [`surface`], [`volume`] | printed rules at free surfaces; density kept at that of the packing |
-//! | [`time_step`], [`stage_times`], [`restart`], [`error`] | what their names say |
+//! | [`time_step`], [`stage_times`], [`interventions`], [`restart`], [`error`] | what their names say |
 //!
 //! Units are SI; stress is positive in tension, pressure in compression; the plane is plane strain, with masses and
 //! energies per metre of depth. This crate does not know where particles enter or leave, and touches no files.
@@ -31,6 +31,7 @@
 pub mod contact;
 pub mod dimension;
 pub mod error;
+pub mod interventions;
 pub mod limiter;
 pub mod pass;
 pub mod prepare;
@@ -46,6 +47,7 @@ pub mod volume;
 
 pub use dimension::SolidDimension;
 pub use error::{SetupError, StepError};
+pub use interventions::Interventions;
 pub use limiter::Limiter;
 pub use restart::Clock;
 pub use scheme::{FaceClosure, Scheme, Settings, SurfaceTreatment, VolumeConsistency};

@@ -11,6 +11,7 @@ use sph_materials::Material;
 
 use crate::dimension::SolidDimension;
 use crate::error::SetupError;
+use crate::interventions::Interventions;
 use crate::scheme::Settings;
 use crate::simulation::Simulation;
 
@@ -26,6 +27,8 @@ pub struct Clock {
     pub particle_steps: u64,
     /// ∫ |P dV| of the density that volume consistency changed [J], per metre of depth in the plane.
     pub relaxation_work: f64,
+    /// How often a bound acted.
+    pub interventions: Interventions,
 }
 
 impl<D: SolidDimension> Simulation<D> {
@@ -36,6 +39,7 @@ impl<D: SolidDimension> Simulation<D> {
             step_count: self.step_count(),
             particle_steps: self.particle_steps(),
             relaxation_work: self.relaxation_work(),
+            interventions: self.interventions(),
         }
     }
 

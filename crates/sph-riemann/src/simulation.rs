@@ -17,13 +17,14 @@ use sph_materials::Material;
 
 use crate::dimension::SolidDimension;
 use crate::error::{SetupError, StepError};
+use crate::interventions::Interventions;
 use crate::pass::{CenteredPairs, Pass, PassKind, Smoothing, find_pairs};
 use crate::record::Row;
 use crate::restart::Clock;
 use crate::scheme::{FaceClosure, Scheme, Settings, SurfaceTreatment};
 use crate::stage_times::{StageTimes, StepStage};
 use crate::time_step::{TimeStepReason, courant_step, signal_speed};
-use crate::update::{TileReport, first_broken, update};
+use crate::update::{StepEnd, TileReport, first_broken, update};
 use crate::{prepare, surface, volume};
 
 /// Below this eigenvalue of L the half step is centred on the true acceleration.
@@ -39,6 +40,7 @@ pub struct Simulation<D: SolidDimension> {
     step_count: u64,
     particle_steps: u64,
     relaxation_work: f64,
+    interventions: Interventions,
     lists: NeighborLists<D>,
     lists_valid: bool,
     scratch: Scratch,
@@ -112,6 +114,7 @@ impl<D: SolidDimension> Simulation<D> {
             step_count: 0,
             particle_steps: 0,
             relaxation_work: 0.0,
+            interventions: Interventions::default(),
             lists: NeighborLists::default(),
             lists_valid: false,
             scratch: Scratch::default(),
@@ -341,6 +344,7 @@ impl<D: SolidDimension> Simulation<D> {
             (0..3).for_each(|a| sum.input.impulse[a] += report.input.impulse[a]);
             sum.input.work += report.input.work;
             sum.relaxation_work += report.relaxation_work;
+            sum.interventions += report.interventions;
         }
         sum
     }
@@ -356,7 +360,9 @@ impl<D: SolidDimension> Simulation<D> {
         self.step_count += 1;
         self.particle_steps += self.particles.len() as u64;
         self.relaxation_work += report.relaxation_work;
-        if let Some(error) = first_broken(&self.scratch.reports, &self.particles, self.time) {
+        self.interventions += report.interventions;
+        let end = StepEnd { time: self.time, time_step, reason };
+        if let Some(error) = first_broken(&self.scratch.reports, &self.particles, end) {
             return Err(error);
         }
         self.lists_valid = !self.lists.outlived(&self.particles.position, &mut self.scratch.ranges);
@@ -390,6 +396,7 @@ impl<D: SolidDimension> Simulation<D> {
         self.step_count = clock.step_count;
         self.particle_steps = clock.particle_steps;
         self.relaxation_work = clock.relaxation_work;
+        self.interventions = clock.interventions;
     }
 
     /// Time [s].
@@ -475,6 +482,11 @@ impl<D: SolidDimension> Simulation<D> {
     /// ∫ |P dV| of the density that volume consistency changed [J], per metre of depth in the plane.
     pub fn relaxation_work(&self) -> f64 {
         self.relaxation_work
+    }
+
+    /// How often a bound acted since the start.
+    pub fn interventions(&self) -> Interventions {
+        self.interventions
     }
 
     /// Bytes of particles, lists and scratch.

@@ -3,6 +3,8 @@
 //! τ = C min D/(c_l + |U_rel|): c_l of the current state, U_rel the largest speed relative to a neighbour in the last step
 //! (paper: no time step is given; the Courant number bounds it).
 
+use std::fmt;
+
 use rayon::prelude::*;
 
 use sph_core::lanes::{LANES, Line};
@@ -26,6 +28,19 @@ pub enum TimeStepReason {
     },
     /// The caller's limit.
     Limit,
+}
+
+impl fmt::Display for TimeStepReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Courant { particle, sound_speed, relative_speed } => write!(
+                f,
+                "Courant condition of particle {particle}: sound speed {sound_speed:.0} m/s, largest speed relative to a \
+                 neighbor {relative_speed:.0} m/s"
+            ),
+            Self::Limit => f.write_str("the caller's limit"),
+        }
+    }
 }
 
 /// The largest step [s] that the Courant number allows, and its reason. `scratch` has one entry a tile.

@@ -21,8 +21,13 @@ use sph_materials::{Damage, Material};
 
 use crate::dimension::{SolidDimension, symmetric};
 use crate::error::{Stage, StepError};
+use crate::interventions::Interventions;
 use crate::record::Row;
 use crate::scheme::{Settings, SurfaceTreatment, VolumeConsistency};
+use crate::time_step::TimeStepReason;
+
+/// Largest relative change of density that volume consistency makes in a step [-].
+const LARGEST_RELAXATION: f64 = 1e-3;
 
 /// What imposed velocities put into the particles in a step, tile by tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,6 +47,19 @@ pub struct TileReport {
     pub broken: Option<u32>,
     /// Work of the volume consistency: ∫ P dV of the density it changes [J], per metre of depth in the plane.
     pub relaxation_work: f64,
+    /// Bounds that acted.
+    pub interventions: Interventions,
+}
+
+/// The step at whose end something was found.
+#[derive(Clone, Copy, Debug)]
+pub struct StepEnd {
+    /// Time at its end [s].
+    pub time: f64,
+    /// Its length [s].
+    pub time_step: f64,
+    /// Why it was as long.
+    pub reason: TimeStepReason,
 }
 
 /// Columns of particles that a step changes.
@@ -62,6 +80,8 @@ struct Context<'a> {
     materials: &'a [Material],
     settings: &'a Settings,
     time_step: f64,
+    /// Eigenvalue of L below which its inverse is capped [-]; zero where nothing is.
+    least_eigenvalue: f64,
 }
 
 /// Advances all particles by one step. `reports` has one entry a tile.
@@ -89,7 +109,11 @@ pub fn update<D: SolidDimension>(
         failed: TiledColumn::new(&mut particles.failed),
         distension: TiledColumn::new(&mut particles.distension),
     };
-    let context = Context { materials, settings, time_step };
+    let least_eigenvalue = match settings.surface {
+        SurfaceTreatment::SpectralCap { cap } if settings.scheme.reconstructs() => 1.0 / cap,
+        _ => 0.0,
+    };
+    let context = Context { materials, settings, time_step, least_eigenvalue };
     let fixed = Fixed {
         material: &particles.material,
         constraint: &particles.constraint,
@@ -205,6 +229,9 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
             Some(v) => relaxation_rate(&v, context.settings, fixed, i, rows, lane, tau),
             None => 0.0,
         };
+        let acted = &mut report.interventions;
+        acted.relaxation_bounded += u64::from(relaxation.abs() >= LARGEST_RELAXATION / tau);
+        acted.inverse_capped += u64::from(row(Row::LEAST_EIGENVALUE) < context.least_eigenvalue);
         let flow_density = self.density[k] * (-tau * divergence).exp();
         self.density[k] =
             if relaxation == 0.0 { flow_density } else { flow_density * (tau * relaxation).exp() };
@@ -214,6 +241,7 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
         self.advance_deviator(k, &gradient, material, tau);
         let damage = Damage { failed: self.failed[k], distension: self.distension[k] };
         let state = material.advance_failure(damage, self.density[k], self.energy[k], tau);
+        report.interventions.failures += u64::from(state.damage.failed && !self.failed[k]);
         self.failed[k] = state.damage.failed;
         self.distension[k] = state.damage.distension;
         if state.strength_left < 1.0 {
@@ -395,7 +423,7 @@ fn relaxation_rate(
     }
     let sound_speed = row(Row::LONGITUDINAL) * row(Row::INVERSE_DENSITY);
     let h = 2.0 * settings.smoothing * fixed.size[i];
-    let largest = 1e-3 / tau;
+    let largest = LARGEST_RELAXATION / tau;
     (v.rate * sound_speed / h * share).clamp(-largest, largest)
 }
 
@@ -403,14 +431,16 @@ fn relaxation_rate(
 pub fn first_broken<D: SolidDimension>(
     reports: &[TileReport],
     particles: &Particles<D>,
-    time: f64,
+    end: StepEnd,
 ) -> Option<StepError> {
     let i = reports.iter().find_map(|report| report.broken)? as usize;
     Some(StepError::Broken {
         particle: particles.id[i],
         position: (0..D::COUNT).map(|a| particles.position[a][i]).collect(),
         stage: Stage::Update,
-        time,
+        time: end.time,
+        time_step: end.time_step,
+        reason: end.reason,
         density: particles.density[i],
         specific_internal_energy: particles.specific_internal_energy[i],
     })

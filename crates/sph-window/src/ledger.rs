@@ -147,14 +147,18 @@ impl Ledger {
 
     /// Largest residual as a part of all that was ever booked of the same content: round-off when the ledger closes.
     pub fn relative_residual(&self, now: &Content) -> f64 {
+        let [mass, momentum, energy] = self.relative_residuals(now);
+        mass.max(momentum).max(energy)
+    }
+
+    /// Residuals of mass, momentum and energy, each as a part of all that was ever booked of it [-].
+    pub fn relative_residuals(&self, now: &Content) -> [f64; 3] {
         let (residual, scale) = (self.residual(now), self.throughput);
         let momentum = residual.momentum.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
         let momentum_scale = scale.momentum.iter().fold(0.0, |m: f64, &p| m.max(p));
         // A content that was never there (momentum of a medium at rest) has no scale, and no residual either.
         let part = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value.abs() / scale };
-        part(residual.mass, scale.mass)
-            .max(part(momentum, momentum_scale))
-            .max(part(residual.energy, scale.energy))
+        [part(residual.mass, scale.mass), part(momentum, momentum_scale), part(residual.energy, scale.energy)]
     }
 }
 

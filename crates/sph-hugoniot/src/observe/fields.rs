@@ -7,6 +7,11 @@ use sph_window::Window;
 /// Squares are drawn larger than √(m/ρ) by this factor: sheared lattices then show no seams, and pores hardly shrink.
 const OVERLAP: f64 = 1.2;
 
+/// Edge [m] of the square that a particle of this mass [kg/m] and density [kg/m³] is drawn in.
+pub fn drawn_size(mass: f64, density: f64) -> f64 {
+    OVERLAP * (mass / density).sqrt()
+}
+
 /// Places and fields of all particles at one moment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
@@ -43,7 +48,7 @@ impl Fields {
                 .mass
                 .iter()
                 .zip(&particles.density)
-                .map(|(m, rho)| OVERLAP * (m / rho).sqrt())
+                .map(|(m, rho)| drawn_size(*m, *rho))
                 .collect(),
             density: particles.density.clone(),
             stress: (0..particles.len()).map(|i| simulation.stress(i)[0]).collect(),

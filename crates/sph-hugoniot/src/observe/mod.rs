@@ -5,6 +5,6 @@ mod fields;
 mod profile;
 mod states;
 
-pub use fields::Fields;
+pub use fields::{Fields, drawn_size};
 pub use profile::{Bin, FrontProfile, ProfileGrid};
 pub use states::{MeanState, States};

@@ -4,13 +4,14 @@
 //! case.ron            the case file, as it was read
 //! case.json           the resolved case in SI
 //! hugoniot.csv, .json the table of all finished points
-//! points/up_0100/     profile.csv and history.csv of one point; its outcome, or its last states (crate::restart)
+//! points/up_0100/     profile.csv, history.csv and monitors.csv of one point; its outcome, or its last states (crate::restart)
 //! plots/              hugoniot, profiles, histories, fields
 //! ```
 //!
 //! The table is written anew after each finished point, atomically: whatever ends a run, what was computed is there.
 
 pub mod earlier;
+pub mod monitors;
 pub mod plots;
 pub mod summary;
 pub mod table;
@@ -71,6 +72,9 @@ impl Report {
         if !outcome.cell_velocities.is_empty() {
             table::history(outcome).write_csv(folder.join("history.csv"))?;
             self.write_figure(&plots::history(outcome, case.medium.cell), &format!("history_{stem}"))?;
+        }
+        if !outcome.monitors.is_empty() {
+            monitors::table(outcome).write_csv(folder.join("monitors.csv"))?;
         }
         if case.output.images && !outcome.fields.x.is_empty() {
             plots::fields(outcome).write_png(self.plot(&format!("fields_{stem}.png")))?;

@@ -8,7 +8,7 @@ use crate::observe::{Bin, MeanState};
 use crate::outcome::PointOutcome;
 
 /// A column of numbers: name, unit, description, and how a row gives its value.
-type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
+pub(super) type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
 
 /// What is measured of a point.
 const MEASURED: [Number<PointOutcome>; 13] = [
@@ -70,7 +70,7 @@ fn behind(outcome: &PointOutcome, value: fn(&MeanState) -> f64) -> f64 {
     outcome.states.map_or(f64::NAN, |s| value(&s.behind))
 }
 
-fn add<Row>(table: Table, columns: &[Number<Row>], rows: &[&Row]) -> Table {
+pub(super) fn add<Row>(table: Table, columns: &[Number<Row>], rows: &[&Row]) -> Table {
     columns.iter().fold(table, |table, (name, unit, text, value)| {
         table.with(Column::float(name, unit, text, rows.iter().map(|r| value(r)).collect::<Vec<_>>()))
     })
@@ -90,7 +90,11 @@ pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Tab
         .with(whole("averaged_cells", "cells that u_s is averaged over", |o| o.averaged_cells as i64))
         .with(whole("steps", "steps made", |o| o.steps as i64))
         .with(whole("particles", "particles in the window at the end", |o| o.particles as i64));
-    add(table, &SPENT, outcomes).with(Column::text("status", "how the point ended", status))
+    super::monitors::with_worst(add(table, &SPENT, outcomes), outcomes).with(Column::text(
+        "status",
+        "how the point ended",
+        status,
+    ))
 }
 
 /// The averaged profile of a point.

@@ -1,53 +1,10 @@
-//! Names of what is run: suites, schemes, tiers, and one run of a suite.
+//! Names of what is run: schemes, tiers, and one run of a suite.
 
 use std::fmt;
 
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
-use sph_riemann::{Limiter, Scheme};
-
-/// A problem with a known answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SuiteName {
-    /// Elastic-plastic Riemann problem.
-    Riemann,
-    /// Longitudinal sound wave.
-    SoundWave,
-    /// Verney's cylindrical shell.
-    Verny,
-}
-
-impl SuiteName {
-    /// All suites, in the order of the report.
-    pub const ALL: [Self; 3] = [Self::Riemann, Self::SoundWave, Self::Verny];
-
-    /// Name in commands, files and folders.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Riemann => "riemann",
-            Self::SoundWave => "sound-wave",
-            Self::Verny => "verny",
-        }
-    }
-
-    /// Title in reports.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Riemann => "Elastic-plastic Riemann problem",
-            Self::SoundWave => "Longitudinal sound wave",
-            Self::Verny => "Verney's cylindrical shell",
-        }
-    }
-
-    /// What `n` counts in this suite.
-    pub fn resolution_name(self) -> &'static str {
-        match self {
-            Self::Riemann | Self::SoundWave => "particles along x",
-            Self::Verny => "rings of particles (D0 = 20 mm / n)",
-        }
-    }
-}
+use sph_riemann::{Scheme, Settings};
 
 /// A scheme of the solver, by its name in commands and files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum, Serialize, Deserialize)]
@@ -91,16 +48,44 @@ impl SchemeName {
             Self::TkcHancock => Scheme::TkcHancock,
         }
     }
+
+    /// Courant number of the scheme's published figures: CSPH 0.3, TKC-MUSCL-SPH 0.1, TKC-Hancock 0.4.
+    pub fn courant(self) -> f64 {
+        match self {
+            Self::Csph => 0.3,
+            Self::TkcMuscl => 0.1,
+            Self::TkcHancock => 0.4,
+        }
+    }
+
+    /// Price of a particle-step, that of the corrected schemes being 1.
+    pub fn price(self) -> f64 {
+        match self {
+            Self::Csph => 0.5,
+            Self::TkcMuscl | Self::TkcHancock => 1.0,
+        }
+    }
+
+    /// The solver's settings: its defaults for the scheme, with the published Courant number and, for the published
+    /// schemes, without the volume consistency that they do not know.
+    pub fn settings(self) -> Settings {
+        let mut settings = Settings::for_scheme(self.scheme());
+        settings.courant = self.courant();
+        if self != Self::TkcHancock {
+            settings.volume_consistency = None;
+        }
+        settings
+    }
 }
 
 /// How much is run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tier {
-    /// Coarse resolutions: under two minutes on two cores.
+    /// Coarse resolutions: under three minutes on two cores, all suites together.
     #[default]
     Quick,
-    /// Every resolution of the tables.
+    /// Every resolution of the tables: under an hour on two cores.
     Full,
 }
 
@@ -114,42 +99,47 @@ impl Tier {
     }
 }
 
-/// One run: a suite with one scheme at one resolution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+/// One run: a variant of a suite's problem with one scheme at one resolution.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Case {
-    /// The problem.
-    pub suite: SuiteName,
+    /// Name of the suite.
+    pub suite: String,
+    /// Variant of the problem (a material, a velocity, an angle); empty where a suite has one only.
+    pub variant: String,
     /// The scheme.
     pub scheme: SchemeName,
-    /// Resolution, see [`SuiteName::resolution_name`].
+    /// Resolution; what it counts is said by [`About::resolution`](crate::suites::About::resolution).
     pub n: u32,
 }
 
 impl Case {
-    /// Courant number of the run.
-    ///
-    /// CSPH, TKC-MUSCL-SPH and the shell: what the published figures of the scheme were measured with. TKC-Hancock in
-    /// the two plane problems: 0.5, where the published figures have 0.4; what 0.4 gives is in their READMEs.
-    pub fn courant(self) -> f64 {
-        match (self.scheme, self.suite) {
-            (SchemeName::Csph, _) => 0.3,
-            (SchemeName::TkcMuscl, _) => 0.1,
-            (SchemeName::TkcHancock, SuiteName::Verny) => 0.4,
-            (SchemeName::TkcHancock, SuiteName::Riemann | SuiteName::SoundWave) => 0.5,
-        }
+    /// The only problem of a suite.
+    pub fn new(suite: &str, scheme: SchemeName, n: u32) -> Self {
+        Self { suite: suite.to_owned(), variant: String::new(), scheme, n }
     }
 
-    /// Limiter of the run, where it is not the scheme's default: the published figures of TKC-Hancock in the two plane
-    /// problems were measured with the monotonized central one.
-    pub fn limiter(self) -> Option<Limiter> {
-        let is_plane = matches!(self.suite, SuiteName::Riemann | SuiteName::SoundWave);
-        (self.scheme == SchemeName::TkcHancock && is_plane).then_some(Limiter::MonotonizedCentral)
+    /// The same run of a variant of the problem.
+    #[must_use]
+    pub fn of_variant(mut self, variant: &str) -> Self {
+        variant.clone_into(&mut self.variant);
+        self
     }
-}
 
-impl fmt::Display for SuiteName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.as_str())
+    /// All `schemes` at all `resolutions`, of the only problem of a suite.
+    pub fn grid(suite: &str, schemes: &[SchemeName], resolutions: &[u32]) -> Vec<Self> {
+        let of_scheme = |&scheme| resolutions.iter().map(move |&n| Self::new(suite, scheme, n));
+        schemes.iter().flat_map(of_scheme).collect()
+    }
+
+    /// Whether two runs differ in resolution only: their errors make an order of convergence.
+    pub fn is_kin_of(&self, other: &Self) -> bool {
+        (&self.suite, &self.variant, self.scheme) == (&other.suite, &other.variant, other.scheme)
+    }
+
+    /// Name for files, without an extension: `riemann-tkc-hancock-100`.
+    pub fn stem(&self) -> String {
+        let variant = if self.variant.is_empty() { String::new() } else { format!("-{}", self.variant) };
+        format!("{}{variant}-{}-{}", self.suite, self.scheme, self.n)
     }
 }
 
@@ -161,6 +151,7 @@ impl fmt::Display for SchemeName {
 
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {} n = {}", self.suite, self.scheme, self.n)
+        let variant = if self.variant.is_empty() { String::new() } else { format!(" {}", self.variant) };
+        write!(f, "{}{variant} {} n = {}", self.suite, self.scheme, self.n)
     }
 }

@@ -4,12 +4,14 @@
 //! it: an error that does not fall with the resolution (see the guide on disorder). Every free particle is moved by up to
 //! `jitter` particle sizes along each axis, uniformly at random; the rest is [`crate::suites::riemann`].
 
-use sph_core::{Constraint, Domain, Particles};
-use sph_riemann::{FaceClosure, Scheme, Settings, Simulation};
+use sph_core::{Constraint, Dim2, Domain, Particles};
+use sph_riemann::{FaceClosure, Scheme, Settings};
 
-use crate::case::{Case, SchemeName, SuiteName};
+use crate::case::{Case, SchemeName};
 use crate::error::ValidateError;
+use crate::run::{Run, material};
 use crate::suites::riemann::{DURATION, FROZEN_LAYERS, LENGTH, Problem, ROWS, SMOOTHING, particles};
+use crate::watch::Watch;
 
 /// One run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,9 +31,9 @@ pub struct Disorder {
 /// # Errors
 /// A run that breaks down.
 pub fn run(disorder: Disorder) -> Result<f64, ValidateError> {
-    let material = crate::suites::material("aluminium-riemann")?;
+    let material = material("aluminium-riemann")?;
     let problem = Problem::new(&material)?;
-    let case = Case { suite: SuiteName::Riemann, scheme: SchemeName::TkcHancock, n: disorder.n };
+    let case = Case::new("riemann", SchemeName::TkcHancock, disorder.n);
     let size = LENGTH / f64::from(disorder.n);
     let half = 0.5 * LENGTH + f64::from(FROZEN_LAYERS) * size;
     let domain = Domain::new([-half, 0.0].into(), [half, f64::from(ROWS) * size].into(), [false, true]);
@@ -42,16 +44,9 @@ pub fn run(disorder: Disorder) -> Result<f64, ValidateError> {
         face_closure: disorder.sweeps.map(|sweeps| FaceClosure { sweeps }),
         ..Settings::for_scheme(Scheme::TkcHancock)
     };
-    let mut simulation = Simulation::new(domain, vec![material], particles, settings)
-        .map_err(|source| ValidateError::Setup { case, source })?;
-    while simulation.time() < DURATION * (1.0 - 1e-12) {
-        let time = simulation.time();
-        simulation.step_at_most(DURATION - time).map_err(|source| ValidateError::Numerical {
-            case,
-            time,
-            source,
-        })?;
-    }
+    let mut run = Run::new(&case, Watch::silent(), domain, material, particles, settings)?;
+    run.advance(DURATION)?;
+    let simulation = &run.simulation;
     let particles = simulation.particles();
     let free: Vec<usize> =
         (0..particles.len()).filter(|&i| particles.constraint[i] == Constraint::Free).collect();
@@ -63,7 +58,7 @@ pub fn run(disorder: Disorder) -> Result<f64, ValidateError> {
 }
 
 /// Moves each free particle by up to `amplitude` [m] along each axis.
-fn shake(particles: &mut Particles<sph_core::Dim2>, amplitude: f64, seed: u64) {
+fn shake(particles: &mut Particles<Dim2>, amplitude: f64, seed: u64) {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(12345);
     let mut noise = || {
         // Knuth's linear congruential generator; its upper bits.

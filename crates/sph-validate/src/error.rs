@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
+use sph_materials::HugoniotError;
 use thiserror::Error;
-
-use crate::case::Case;
 
 /// Why a suite gave no result.
 #[derive(Debug, Error)]
@@ -13,7 +12,7 @@ pub enum ValidateError {
     #[error("{case}: the problem could not be set up: {source}")]
     Setup {
         /// Which run.
-        case: Case,
+        case: String,
         /// What the solver says.
         source: sph_riemann::SetupError,
     },
@@ -21,7 +20,7 @@ pub enum ValidateError {
     #[error("{case}: the particles cannot be placed: {reason}")]
     Packing {
         /// Which run.
-        case: Case,
+        case: String,
         /// What is wrong.
         reason: String,
     },
@@ -29,31 +28,45 @@ pub enum ValidateError {
     #[error("{case}: numerical failure at t = {:.4} us: {source}", time * 1e6)]
     Numerical {
         /// Which run.
-        case: Case,
+        case: String,
         /// Time reached [s].
         time: f64,
         /// What the solver says.
         source: sph_riemann::StepError,
     },
-    /// The shell was still moving when its time was up.
-    #[error("{case}: the shell has not stopped after {:.1} us", limit * 1e6)]
-    NotStopped {
+    /// The moving window cannot be made, or stopped.
+    #[error("{case}: moving window: {source}")]
+    Window {
         /// Which run.
-        case: Case,
-        /// Time allowed [s].
-        limit: f64,
+        case: String,
+        /// What the window says.
+        source: sph_window::WindowError,
     },
+    /// What a run waits for did not come in the time or travel allowed.
+    #[error("{case}: {reason}")]
+    NotReached {
+        /// Which run.
+        case: String,
+        /// What did not come, with the limit.
+        reason: String,
+    },
+    /// The run was interrupted.
+    #[error("interrupted")]
+    Interrupted,
     /// A material of a suite is not as the suite needs it.
     #[error("material library: {0}")]
     Material(String),
-    /// The exact solution does not exist.
+    /// The exact solution of the Riemann problem does not exist.
     #[error("exact solution: {0}")]
     Reference(#[from] crate::reference::riemann::RiemannError),
-    /// A file of gates cannot be read.
+    /// The exact waves ahead of a piston do not exist.
+    #[error("exact solution: {0}")]
+    Waves(#[from] HugoniotError),
+    /// A file of gates cannot be read, or judges what no run measures.
     #[error("validation/{suite}/gates.ron: {reason}")]
     Gates {
         /// Folder of the suite.
-        suite: &'static str,
+        suite: String,
         /// What is wrong, with line and column.
         reason: String,
     },
@@ -68,10 +81,11 @@ pub enum ValidateError {
 }
 
 impl ValidateError {
-    /// Exit status of the program: 2 for bad input, 3 for a numerical failure.
+    /// Exit status of the program: 2 for bad input, 3 for a numerical failure, 130 when interrupted.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Numerical { .. } | Self::NotStopped { .. } => 3,
+            Self::Numerical { .. } | Self::Window { .. } | Self::NotReached { .. } => 3,
+            Self::Interrupted => 130,
             _ => 2,
         }
     }

@@ -9,9 +9,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::{Case, SchemeName, SuiteName};
+use crate::case::{Case, SchemeName};
 use crate::error::ValidateError;
-use crate::metric::{Measurement, Metric};
 
 /// Share of the error by which a run may be worse than what this program has reached before.
 const REACHED_MARGIN: f64 = 0.05;
@@ -63,15 +62,19 @@ impl std::fmt::Display for Significant {
     }
 }
 
-/// The gates of one suite, as its file has them.
-#[derive(Clone, Debug, Deserialize)]
+/// The gates of one suite, as its file has them. An entry without a scheme or a variant is meant for all of them.
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GateFile {
     /// Where the figures come from.
     pub source: String,
+    #[serde(default)]
     figures: Vec<Figure>,
+    #[serde(default)]
     reached: Vec<Figure>,
+    #[serde(default)]
     limits: Vec<Limit>,
+    #[serde(default)]
     orders: Vec<Order>,
 }
 
@@ -79,8 +82,11 @@ pub struct GateFile {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Figure {
-    scheme: SchemeName,
-    metric: Metric,
+    #[serde(default)]
+    scheme: Option<SchemeName>,
+    #[serde(default)]
+    variant: Option<String>,
+    metric: String,
     printed: BTreeMap<u32, String>,
     /// Uncertainty of the reading of the figure, in its unit: allowed as well.
     #[serde(default)]
@@ -91,8 +97,11 @@ struct Figure {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Limit {
-    scheme: SchemeName,
-    metric: Metric,
+    #[serde(default)]
+    scheme: Option<SchemeName>,
+    #[serde(default)]
+    variant: Option<String>,
+    metric: String,
     error_at_most: f64,
 }
 
@@ -100,21 +109,54 @@ struct Limit {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Order {
-    scheme: SchemeName,
-    metric: Metric,
+    #[serde(default)]
+    scheme: Option<SchemeName>,
+    #[serde(default)]
+    variant: Option<String>,
+    metric: String,
     at_least: f64,
 }
 
+/// For which rows an entry is meant.
+struct Meant<'f> {
+    scheme: Option<SchemeName>,
+    variant: Option<&'f str>,
+    metric: &'f str,
+}
+
+impl Meant<'_> {
+    fn fits(&self, case: &Case, metric: &str) -> bool {
+        self.metric == metric && self.fits_case(case)
+    }
+
+    fn fits_case(&self, case: &Case) -> bool {
+        self.scheme.is_none_or(|scheme| scheme == case.scheme)
+            && self.variant.is_none_or(|variant| variant == case.variant)
+    }
+}
+
+macro_rules! meant {
+    ($($entry:ident),*) => {$(
+        impl $entry {
+            fn meant(&self) -> Meant<'_> {
+                Meant { scheme: self.scheme, variant: self.variant.as_deref(), metric: &self.metric }
+            }
+        }
+    )*};
+}
+
+meant!(Figure, Limit, Order);
+
 impl GateFile {
-    /// The gates of a suite, compiled in from its folder.
-    pub fn of(suite: SuiteName) -> Result<Self, ValidateError> {
-        let text = match suite {
-            SuiteName::Riemann => include_str!("../../../validation/riemann/gates.ron"),
-            SuiteName::SoundWave => include_str!("../../../validation/sound-wave/gates.ron"),
-            SuiteName::Verny => include_str!("../../../validation/verny/gates.ron"),
-        };
-        let fault = |reason: String| ValidateError::Gates { suite: suite.as_str(), reason };
-        let file: Self = ron::from_str(text).map_err(|error| fault(error.to_string()))?;
+    /// Reads the gates of a suite from the text of its file; an empty text has no gates.
+    pub fn read(suite: &str, text: &str) -> Result<Self, ValidateError> {
+        if text.is_empty() {
+            return Ok(Self::default());
+        }
+        let fault = |reason: String| ValidateError::Gates { suite: suite.to_owned(), reason };
+        let format =
+            ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        let file: Self = format.from_str(text).map_err(|error| fault(error.to_string()))?;
         let mut printed = file.figures.iter().chain(&file.reached).flat_map(|figure| figure.printed.values());
         match printed.find(|text| Printed::read(text).is_none()) {
             Some(text) => Err(fault(format!("`{text}` is not a printed number"))),
@@ -122,18 +164,17 @@ impl GateFile {
         }
     }
 
-    /// The gate of a measurement: the narrowest of those that are meant for it.
-    pub fn of_measurement(&self, case: Case, measurement: &Measurement) -> Option<Gate> {
-        let is_meant = |scheme, metric| scheme == case.scheme && metric == measurement.metric;
+    /// The gate of an error of `metric` at `reference`: the narrowest of those that are meant for it.
+    pub fn of_figure(&self, case: &Case, metric: &str, reference: f64) -> Option<Gate> {
         let errors = |figures: &[Figure], margin: f64| -> Vec<f64> {
-            let meant = figures.iter().filter(|figure| is_meant(figure.scheme, figure.metric));
+            let meant = figures.iter().filter(|figure| figure.meant().fits(case, metric));
             let limit = |figure: &Figure| {
                 let printed = Printed::read(figure.printed.get(&case.n)?)?;
-                Some(printed.error_at_most(measurement.reference, margin) + figure.reading)
+                Some(printed.error_at_most(reference, margin) + figure.reading)
             };
             meant.filter_map(limit).collect()
         };
-        let limits = self.limits.iter().filter(|limit| is_meant(limit.scheme, limit.metric));
+        let limits = self.limits.iter().filter(|limit| limit.meant().fits(case, metric));
         let limits = limits.map(|limit| limit.error_at_most);
         let published = errors(&self.figures, 0.0);
         let reached = errors(&self.reached, REACHED_MARGIN);
@@ -141,9 +182,19 @@ impl GateFile {
     }
 
     /// The gate of an order of convergence.
-    pub fn of_order(&self, scheme: SchemeName, metric: Metric) -> Option<Gate> {
-        let order = self.orders.iter().find(|order| order.scheme == scheme && order.metric == metric)?;
+    pub fn of_order(&self, case: &Case, metric: &str) -> Option<Gate> {
+        let order = self.orders.iter().find(|order| order.meant().fits(case, metric))?;
         Some(Gate::AtLeast(order.at_least))
+    }
+
+    /// A figure that the file judges in runs like `case` and that is not among those `measured`: it would never be
+    /// held against anything.
+    pub fn unmeasured(&self, case: &Case, measured: &[&str]) -> Option<&str> {
+        let figures = self.figures.iter().chain(&self.reached).map(Figure::meant);
+        let all =
+            figures.chain(self.limits.iter().map(Limit::meant)).chain(self.orders.iter().map(Order::meant));
+        let mut metrics = all.filter(|meant| meant.fits_case(case)).map(|meant| meant.metric);
+        metrics.find(|metric| !measured.contains(metric))
     }
 }
 
@@ -174,9 +225,9 @@ mod tests {
 
     #[test]
     fn files_of_all_suites_are_good() {
-        for suite in SuiteName::ALL {
-            let file = GateFile::of(suite).expect("a readable file");
-            assert!(!file.source.is_empty() && !file.figures.is_empty(), "{suite}");
+        for about in crate::suites::ALL.iter().map(|suite| suite.about()) {
+            let file = GateFile::read(about.name, about.gates).expect("a readable file");
+            assert!(!file.source.is_empty(), "{}", about.name);
         }
     }
 
@@ -200,14 +251,40 @@ mod tests {
         assert!(Gate::AtLeast(2.0).passes(2.0, 0.0) && !Gate::AtLeast(2.0).passes(f64::NAN, 0.0));
     }
 
+    const TEXT: &str = r#"(
+        source: "nowhere",
+        figures: [(scheme: TkcHancock, metric: "stress_l1", printed: {100: "0.045"})],
+        reached: [(variant: "copper", metric: "stress_l1", printed: {100: "0.02"})],
+        limits: [(metric: "energy_drift", error_at_most: 1e-10)],
+        orders: [(scheme: Csph, metric: "stress_l1", at_least: 0.4)],
+    )"#;
+
     #[test]
-    fn published_figure_becomes_the_gate_of_its_own_run_only() {
-        let file = GateFile::of(SuiteName::Riemann).expect("a readable file");
-        let measurement = Measurement::error_of(Metric::StressL1, 1.0);
-        let case = |n| Case { suite: SuiteName::Riemann, scheme: SchemeName::TkcHancock, n };
-        let gate = file.of_measurement(case(100), &measurement).expect("a gate at N = 100");
-        assert!(matches!(gate, Gate::ErrorAtMost(limit) if limit <= 0.04505), "{gate}");
-        assert_eq!(file.of_measurement(case(101), &measurement), None);
+    fn gates_hold_the_rows_that_they_are_meant_for() {
+        let file = GateFile::read("test", TEXT).expect("a readable file");
+        let gate = |case: &Case, metric: &str| match file.of_figure(case, metric, 0.0) {
+            Some(Gate::ErrorAtMost(limit)) => limit,
+            _ => f64::NAN,
+        };
+        let case = Case::new("test", SchemeName::TkcHancock, 100);
+        assert!((gate(&case, "stress_l1") - 0.0455).abs() < 1e-12);
+        let copper = case.clone().of_variant("copper");
+        assert!((gate(&copper, "stress_l1") - (1.05 * 0.02 + 0.005)).abs() < 1e-12, "the narrower one");
+        assert!(gate(&Case { n: 101, ..copper.clone() }, "stress_l1").is_nan());
+        let csph = Case::new("test", SchemeName::Csph, 7);
+        assert!(gate(&csph, "stress_l1").is_nan() && gate(&csph, "energy_drift") == 1e-10);
+        assert_eq!(file.of_order(&csph, "stress_l1"), Some(Gate::AtLeast(0.4)));
+        assert_eq!(file.of_order(&copper, "stress_l1"), None);
+        assert_eq!(file.unmeasured(&csph, &["stress_l1", "energy_drift"]), None);
+        assert_eq!(file.unmeasured(&csph, &["stress_l1"]), Some("energy_drift"));
+    }
+
+    #[test]
+    fn faults_of_a_file_of_gates_are_told_with_their_place() {
+        let fault = |text: &str| GateFile::read("test", text).expect_err("a fault").to_string();
+        assert!(fault("(\n    sorce: \"a\",\n)").contains("2:"), "{}", fault("(\n    sorce: \"a\",\n)"));
+        let number = r#"(source: "a", figures: [(metric: "m", printed: {1: "about 3"})])"#;
+        assert!(fault(number).contains("`about 3` is not a printed number"));
     }
 
     #[test]

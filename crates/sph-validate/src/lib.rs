@@ -6,12 +6,14 @@
 //! are data in `validation/<suite>/gates.ron`, and reported ([`report`], [`summary`], [`plots`]). The binary
 //! `sph-validate` and the tests run the same code ([`runner`]).
 //!
-//! ```no_run
-//! use sph_validate::case::{Case, SchemeName, SuiteName};
+//! ```
+//! use sph_validate::case::{Case, SchemeName};
+//! use sph_validate::{suites, watch::Watch};
 //!
-//! let case = Case { suite: SuiteName::Riemann, scheme: SchemeName::TkcHancock, n: 100 };
-//! let outcome = sph_validate::suites::run(case, &|_| ())?;
-//! println!("{:?}", outcome.measurements);
+//! let case = Case::new("riemann", SchemeName::TkcHancock, 50);
+//! let suite = suites::find("riemann").expect("it is in the list");
+//! let outcome = suite.run(&case, Watch::silent())?;
+//! assert!(outcome.figure("stress_l1").is_some_and(|figure| figure.value < 0.1));
 //! # Ok::<(), sph_validate::error::ValidateError>(())
 //! ```
 
@@ -19,13 +21,17 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod case;
+pub mod conservation;
 pub mod disorder;
 pub mod error;
 pub mod gate;
 pub mod metric;
+pub mod outcome;
 pub mod plots;
 pub mod reference;
 pub mod report;
+pub mod run;
 pub mod runner;
 pub mod suites;
 pub mod summary;
+pub mod watch;

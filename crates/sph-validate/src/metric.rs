@@ -1,93 +1,107 @@
 //! What is measured of a run: error norms, places of waves, observed orders.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
-/// A figure of a run. Names as in `results.json` and in the files of gates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+/// A figure of a run: its name in `results.json` and in the files of gates, its unit, and what kind of figure it is.
+///
+/// A suite writes its figures as constants: `const STRESS_L1: Metric = Metric::norm("stress_l1", "GPa");`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Metric {
+    /// Name, in `snake_case`.
+    pub name: Cow<'static, str>,
+    /// Unit of the value.
+    pub unit: Cow<'static, str>,
+    /// What kind of figure.
+    pub kind: Kind,
+}
+
+/// What kind of figure a metric is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Metric {
-    /// Mean over the particles of |σ_xx - exact| [GPa].
-    StressL1,
-    /// Shift of the elastic precursor [mm].
-    PrecursorShift,
-    /// Shift of the plastic compression wave [mm].
-    PlasticCompressionShift,
-    /// Shift of the plastic release wave [mm].
-    PlasticReleaseShift,
-    /// Shift of the elastic release wave [mm].
-    ElasticReleaseShift,
-    /// Mean over the particles of |U_x - reference| [m/s].
-    VelocityL1,
-    /// Shift of the centroid of the pulse that runs to the right [mm].
-    PulseShift,
-    /// Greatest U_x of that pulse [m/s].
-    PulsePeak,
-    /// Inner radius at the stop from the mean of r² over the whole shell [mm].
-    StopRadiusBySquare,
-    /// Inner radius at the stop from the innermost ring of particles [mm].
-    StopRadiusByRing,
-    /// Time of the stop of the innermost ring [µs].
-    StopTime,
-    /// Change of the total energy over the run, as a share of the kinetic energy [-].
-    EnergyDrift,
+pub enum Kind {
+    /// Norm of an error: the reference is zero, an order of convergence is reported.
+    Norm,
+    /// A value whose error has an order of convergence.
+    ConvergingValue,
+    /// A value beside its reference, or a distance from it; no order is reported.
+    Value,
+    /// What was lost of what must be conserved.
+    Drift,
 }
 
 impl Metric {
-    /// Name in tables.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::StressL1 => "stress_l1",
-            Self::PrecursorShift => "precursor_shift",
-            Self::PlasticCompressionShift => "plastic_compression_shift",
-            Self::PlasticReleaseShift => "plastic_release_shift",
-            Self::ElasticReleaseShift => "elastic_release_shift",
-            Self::VelocityL1 => "velocity_l1",
-            Self::PulseShift => "pulse_shift",
-            Self::PulsePeak => "pulse_peak",
-            Self::StopRadiusBySquare => "stop_radius_by_square",
-            Self::StopRadiusByRing => "stop_radius_by_ring",
-            Self::StopTime => "stop_time",
-            Self::EnergyDrift => "energy_drift",
-        }
+    /// Norm of an error; its order of convergence is reported.
+    pub const fn norm(name: &'static str, unit: &'static str) -> Self {
+        Self::of_kind(name, unit, Kind::Norm)
     }
 
-    /// Unit of the value.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::StressL1 => "GPa",
-            Self::VelocityL1 | Self::PulsePeak => "m/s",
-            Self::StopTime => "us",
-            Self::EnergyDrift => "-",
-            _ => "mm",
-        }
+    /// A value, or a distance; no order is reported.
+    pub const fn value(name: &'static str, unit: &'static str) -> Self {
+        Self::of_kind(name, unit, Kind::Value)
     }
 
-    /// Whether an order of convergence is reported: norms of the error, not places and values.
-    pub fn has_order(self) -> bool {
-        matches!(self, Self::StressL1 | Self::VelocityL1)
+    /// A value whose error has an order of convergence, which is reported.
+    pub const fn converging_value(name: &'static str, unit: &'static str) -> Self {
+        Self::of_kind(name, unit, Kind::ConvergingValue)
+    }
+
+    /// What was lost of what must be conserved, as a share of it.
+    pub const fn drift(name: &'static str) -> Self {
+        Self::of_kind(name, "-", Kind::Drift)
+    }
+
+    const fn of_kind(name: &'static str, unit: &'static str, kind: Kind) -> Self {
+        Self { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), kind }
+    }
+
+    /// Whether an order of convergence is reported.
+    pub fn has_order(&self) -> bool {
+        matches!(self.kind, Kind::Norm | Kind::ConvergingValue)
+    }
+
+    /// Name for readers: `stress l1`.
+    pub fn title(&self) -> String {
+        self.name.replace('_', " ")
     }
 }
 
+/// What a value should be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Target {
+    /// Known before the run, in the unit of the metric; 0 for norms and shifts.
+    Known(f64),
+    /// What the finest run of the same variant and scheme gives: where no answer is known. The finest run itself is
+    /// then held by no gate of the error.
+    Finest,
+}
+
 /// A measured value beside what it should be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// What was measured.
     pub metric: Metric,
     /// The value, in [`Metric::unit`].
     pub value: f64,
-    /// What it should be, in the same unit; 0 for norms and shifts.
-    pub reference: f64,
+    /// What it should be.
+    pub target: Target,
 }
 
 impl Measurement {
     /// A measurement whose true value is zero.
     pub fn error_of(metric: Metric, value: f64) -> Self {
-        Self { metric, value, reference: 0.0 }
+        Self::new(metric, value, 0.0)
     }
 
-    /// Distance from the reference.
-    pub fn error(&self) -> f64 {
-        (self.value - self.reference).abs()
+    /// A measurement whose true value is known.
+    pub fn new(metric: Metric, value: f64, reference: f64) -> Self {
+        Self { metric, value, target: Target::Known(reference) }
+    }
+
+    /// A measurement that is held against the finest run of its kin.
+    pub fn against_finest(metric: Metric, value: f64) -> Self {
+        Self { metric, value, target: Target::Finest }
     }
 }
 

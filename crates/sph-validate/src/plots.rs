@@ -1,212 +1,230 @@
-//! Plots of the suites: profile and convergence, the stop radius of the shell, fields of stress.
+//! Parts of plots that suites share: profiles beside a reference, convergence, fields; and the files.
 
 use std::path::{Path, PathBuf};
 
 use sph_io::Color;
-use sph_io::field_image::{Cell, ColorMap, Field, FieldImage};
-use sph_io::plot::{Annotation, Axis, Figure, LegendPosition, Panel, Series};
+use sph_io::field_image::{Cell, ColorMap, FieldImage};
+use sph_io::plot::{Annotation, Axis, Figure, Series};
 
-use crate::case::{SchemeName, SuiteName};
 use crate::error::ValidateError;
 use crate::metric::Metric;
-use crate::suites::{self, Outcome, riemann, sound_wave, verny};
+use crate::outcome::{Field, Outcome};
+use crate::report::error_of;
+use crate::runner::Ended;
+use crate::suites::{About, Drawing, Picture};
 
 /// Profiles are shown at this resolution, or the greatest below it: where the schemes can still be told apart.
 const SHOWN_RESOLUTION: u32 = 400;
 
-const BLACK: Color = Color::rgb(0, 0, 0);
+/// Color of references.
+pub const BLACK: Color = Color::rgb(0, 0, 0);
 
-/// Draws all plots of `outcomes` into `folder`; gives the PNG files with their suites.
-pub fn write_plots(outcomes: &[&Outcome], folder: &Path) -> Result<Vec<(SuiteName, String)>, ValidateError> {
+/// A picture that was written.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Written {
+    /// Name of the suite.
+    pub suite: String,
+    /// File in the folder of the report, PNG.
+    pub file: String,
+    /// The same as SVG, for plots.
+    pub vector: Option<String>,
+    /// What it shows.
+    pub caption: String,
+}
+
+/// Draws all pictures of the runs that have ended into `folder`.
+pub fn write_pictures(ended: &[Ended<'_>], folder: &Path) -> Result<Vec<Written>, ValidateError> {
     let mut written = Vec::new();
-    for suite in SuiteName::ALL {
-        let of_suite: Vec<&Outcome> = outcomes.iter().copied().filter(|o| o.case.suite == suite).collect();
-        if of_suite.is_empty() {
+    for suite in crate::runner::suites_of(ended) {
+        let name = suite.about().name;
+        let of_suite = ended.iter().filter(|ended| ended.job.case.suite == name);
+        let outcomes: Vec<&Outcome> = of_suite.filter_map(|ended| ended.result.as_ref().ok()).collect();
+        if outcomes.is_empty() {
             continue;
         }
-        for (name, figure) in figures(suite, &of_suite)? {
-            write_figure(&figure, folder, &name)?;
-            written.push((suite, format!("{name}.png")));
-        }
-        for name in write_fields(&of_suite, folder)? {
-            written.push((suite, name));
+        for picture in suite.pictures(&outcomes)? {
+            written.push(write(name, &picture, folder)?);
         }
     }
     Ok(written)
 }
 
-fn figures(suite: SuiteName, outcomes: &[&Outcome]) -> Result<Vec<(String, Figure)>, ValidateError> {
-    let named = |suffix: &str| format!("{suite}{suffix}");
-    Ok(match suite {
-        SuiteName::Riemann => vec![
-            (named(""), riemann_profile(outcomes)?),
-            (named("-convergence"), convergence(outcomes, Metric::StressL1, 1.0)),
-        ],
-        SuiteName::SoundWave => vec![
-            (named(""), sound_wave_profile(outcomes)),
-            (named("-convergence"), convergence(outcomes, Metric::VelocityL1, 2.0)),
-        ],
-        SuiteName::Verny => vec![(named(""), stop_radius(outcomes)?)],
-    })
-}
-
-fn write_figure(figure: &Figure, folder: &Path, name: &str) -> Result<(), ValidateError> {
-    for extension in ["svg", "png"] {
-        let path = folder.join(format!("{name}.{extension}"));
-        let result = if extension == "svg" { figure.write_svg(&path) } else { figure.write_png(&path) };
-        result.map_err(|error| output_fault(path, error))?;
-    }
-    Ok(())
-}
-
-/// Pictures of the fields of the finest run of each scheme; those of the start are alike and drawn once.
-fn write_fields(outcomes: &[&Outcome], folder: &Path) -> Result<Vec<String>, ValidateError> {
-    let mut names = Vec::new();
-    for scheme in SchemeName::ALL {
-        let finest = outcomes.iter().filter(|o| o.case.scheme == scheme).max_by_key(|o| o.case.n);
-        for field in finest.iter().flat_map(|outcome| &outcome.fields) {
-            let suite = outcomes[0].case.suite;
-            let name = match field.moment {
-                "start" => format!("{suite}-start.png"),
-                moment => format!("{suite}-{scheme}-{moment}.png"),
-            };
-            if names.contains(&name) {
-                continue;
-            }
-            let path = folder.join(&name);
-            image(field).write_png(&path).map_err(|error| output_fault(path, error))?;
-            names.push(name);
+fn write(suite: &str, picture: &Picture, folder: &Path) -> Result<Written, ValidateError> {
+    let file = format!("{}.png", picture.name);
+    let path = folder.join(&file);
+    let vector = match &picture.drawing {
+        Drawing::Plot(figure) => {
+            figure.write_png(&path).map_err(|error| output_fault(path, error))?;
+            let vector = format!("{}.svg", picture.name);
+            let path = folder.join(&vector);
+            figure.write_svg(&path).map_err(|error| output_fault(path, error))?;
+            Some(vector)
         }
-    }
-    Ok(names)
-}
-
-/// One quadrant of the shell.
-fn image(field: &suites::Field) -> FieldImage {
-    let side = (0.0, 1.04e3 * verny::OUTER_RADIUS);
-    let values = Field::new(field.label, field.values.clone(), ColorMap::Sequential)
-        .with_range(field.range.0, field.range.1);
-    let mut image = FieldImage::new(field.title.clone(), side, side)
-        .with_particles(field.x.clone(), field.y.clone(), field.size.clone())
-        .with_field(values);
-    (image.x_label, image.y_label) = ("x [mm]".into(), "y [mm]".into());
-    (image.cell, image.width) = (Cell::Disc, 800.0);
-    image
+        Drawing::Field(image) => {
+            image.write_png(&path).map_err(|error| output_fault(path, error))?;
+            None
+        }
+    };
+    Ok(Written { suite: suite.to_owned(), file, vector, caption: picture.caption.clone() })
 }
 
 fn output_fault(path: PathBuf, error: sph_io::IoError) -> ValidateError {
     ValidateError::Output { path, reason: error.to_string() }
 }
 
-fn line(style: fn(&str, &[f64], &[f64]) -> Series, label: &str, points: &[(f64, f64)]) -> Series {
+/// A series of points.
+pub fn line(style: fn(&str, &[f64], &[f64]) -> Series, label: &str, points: &[(f64, f64)]) -> Series {
     let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
     style(label, &x, &y)
 }
 
-/// The outcomes whose profiles are shown, one a scheme.
-fn shown<'a>(outcomes: &[&'a Outcome]) -> Vec<&'a Outcome> {
-    let best = |scheme| {
-        let of_scheme = outcomes.iter().copied().filter(move |o| o.case.scheme == scheme);
-        of_scheme.filter(|o| o.case.n <= SHOWN_RESOLUTION).max_by_key(|o| o.case.n)
-    };
-    SchemeName::ALL.into_iter().filter_map(best).collect()
-}
-
-fn with_profiles(mut figure: Figure, outcomes: &[&Outcome]) -> Figure {
+/// The figure with the curve of that name of each variant and scheme, at a resolution where schemes can be told apart,
+/// and the reference on top, dashed.
+pub fn profiles(
+    mut figure: Figure,
+    outcomes: &[&Outcome],
+    curve: &str,
+    (label, reference): (&str, &[(f64, f64)]),
+) -> Figure {
     for outcome in shown(outcomes) {
-        let label = format!("{}, N = {}", outcome.case.scheme.title(), outcome.case.n);
-        figure = figure.with(line(Series::line, &label, &outcome.curve));
+        let label = format!("{}, n = {}", kin_label(outcome, outcomes), outcome.case.n);
+        figure = figure.with(line(Series::line, &label, outcome.curve(curve)));
     }
-    figure
+    figure.with(line(Series::dashed, label, reference).with_color(BLACK))
 }
 
-fn riemann_profile(outcomes: &[&Outcome]) -> Result<Figure, ValidateError> {
-    let title = "Elastic-plastic Riemann problem, t = 2 µs";
-    let figure = Figure::new(title, Axis::new("x [mm]").with_range(-15.0, 15.0), Axis::new("σ_{xx} [GPa]"));
-    let exact = line(Series::dashed, "exact", &riemann::reference_curve()?).with_color(BLACK);
-    Ok(with_profiles(figure, outcomes).with(exact))
+/// The outcomes whose profiles are shown, one of each kin.
+fn shown<'a>(outcomes: &[&'a Outcome]) -> Vec<&'a Outcome> {
+    let of_kin = kins(outcomes).into_iter();
+    let best = |kin: Vec<&'a Outcome>| {
+        let below = kin.iter().copied().filter(|o| o.case.n <= SHOWN_RESOLUTION).max_by_key(|o| o.case.n);
+        below.or_else(|| kin.iter().copied().min_by_key(|o| o.case.n))
+    };
+    of_kin.filter_map(best).collect()
 }
 
-fn sound_wave_profile(outcomes: &[&Outcome]) -> Figure {
-    let title = "Longitudinal sound wave after 3 mm of travel";
-    let figure = Figure::new(title, Axis::new("x [mm]").with_range(1.0, 5.0), Axis::new("U_x [m/s]"));
-    let mesh = line(Series::dashed, "1-D Lagrangian mesh", &sound_wave::reference_curve());
-    with_profiles(figure, outcomes).with(mesh.with_color(BLACK))
+/// Outcomes of the same variant and scheme together, in the order of their first ones, coarse to fine.
+fn kins<'a>(outcomes: &[&'a Outcome]) -> Vec<Vec<&'a Outcome>> {
+    let mut kins: Vec<Vec<&Outcome>> = Vec::new();
+    for &outcome in outcomes {
+        match kins.iter_mut().find(|kin| kin[0].case.is_kin_of(&outcome.case)) {
+            Some(kin) => kin.push(outcome),
+            None => kins.push(vec![outcome]),
+        }
+    }
+    kins.iter_mut().for_each(|kin| kin.sort_by_key(|outcome| outcome.case.n));
+    kins
 }
 
-/// Places and errors of each scheme that was run, coarse to fine.
-fn by_scheme(
+/// Scheme, variant, or both: what tells a kin from the others.
+fn kin_label(outcome: &Outcome, outcomes: &[&Outcome]) -> String {
+    let case = &outcome.case;
+    let one_scheme = outcomes.iter().all(|other| other.case.scheme == case.scheme);
+    match (case.variant.as_str(), one_scheme) {
+        ("", _) => case.scheme.title().to_owned(),
+        (variant, true) => variant.to_owned(),
+        (variant, false) => format!("{variant}, {}", case.scheme.title()),
+    }
+}
+
+/// Points of each kin with its label, in rising order of the first coordinate.
+pub fn by_kin(
     outcomes: &[&Outcome],
     point: impl Fn(&Outcome) -> (f64, f64),
-) -> Vec<(SchemeName, Vec<(f64, f64)>)> {
-    let points = |scheme| {
-        let of_scheme = outcomes.iter().filter(|outcome| outcome.case.scheme == scheme);
-        let mut points: Vec<(f64, f64)> = of_scheme.map(|outcome| point(outcome)).collect();
+) -> Vec<(String, Vec<(f64, f64)>)> {
+    let points = |kin: Vec<&Outcome>| {
+        let mut points: Vec<(f64, f64)> = kin.iter().map(|outcome| point(outcome)).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        (scheme, points)
+        (kin_label(kin[0], outcomes), points)
     };
-    SchemeName::ALL.into_iter().map(points).filter(|(_, points)| !points.is_empty()).collect()
+    kins(outcomes).into_iter().map(points).collect()
 }
 
-/// Error over resolution, with the slope of an order to compare with.
-fn convergence(outcomes: &[&Outcome], metric: Metric, order: f64) -> Figure {
-    let error = |outcome: &Outcome| (f64::from(outcome.case.n), outcome.error(metric).unwrap_or(f64::NAN));
-    let curves = by_scheme(outcomes, error);
+/// One plot of convergence for each figure that has an order.
+pub fn convergences(about: &About, outcomes: &[&Outcome]) -> Vec<Picture> {
+    let mut metrics: Vec<Metric> = Vec::new();
+    for figure in outcomes.iter().flat_map(|outcome| &outcome.measurements) {
+        if figure.metric.has_order() && !metrics.contains(&figure.metric) {
+            metrics.push(figure.metric.clone());
+        }
+    }
+    let is_only = metrics.len() == 1;
+    let picture = |metric: Metric| {
+        let which = if is_only { String::new() } else { format!("-{}", metric.name.replace('_', "-")) };
+        Picture {
+            name: format!("{}-convergence{which}", about.name),
+            caption: format!("{} over {}", metric.title(), about.resolution),
+            drawing: Drawing::Plot(convergence(about, outcomes, &metric)),
+        }
+    };
+    metrics.into_iter().map(picture).collect()
+}
+
+/// Error over resolution, with the slopes of the first and the second order to compare with.
+pub fn convergence(about: &About, outcomes: &[&Outcome], metric: &Metric) -> Figure {
+    let error = |outcome: &Outcome| (f64::from(outcome.case.n), error_of(outcome, metric, outcomes));
+    let is_error = |point: &(f64, f64)| point.1 > 0.0 && point.1.is_finite();
+    let curves = by_kin(outcomes, error).into_iter();
+    let curves: Vec<(String, Vec<(f64, f64)>)> =
+        curves.map(|(label, points)| (label, points.into_iter().filter(is_error).collect())).collect();
     let points = || curves.iter().flat_map(|(_, points)| points.iter().copied());
     let mut resolutions: Vec<f64> = points().map(|(n, _)| n).collect();
     resolutions.sort_by(f64::total_cmp);
     resolutions.dedup();
-    let [first, last] = [resolutions[0], resolutions[resolutions.len() - 1]];
     let extremes = |fold: fn(f64, f64) -> f64, start: f64| points().map(|(_, error)| error).fold(start, fold);
     let [least, greatest] = [extremes(f64::min, f64::INFINITY), extremes(f64::max, 0.0)];
     // The slope covers the last doubling and ends below the last point of the best curve: it hides nothing.
     let foot = 0.5 * least;
-    let label = match metric {
-        Metric::StressL1 => "L_1 error of σ_{xx} [GPa]",
-        _ => "L_1 error of U_x [m/s]",
-    };
-    let y = Axis::log(label).with_range(0.6 * foot, 1.5 * greatest);
-    let x = Axis::log("particles along x, N").with_ticks(&resolutions);
-    let title = format!("{}: convergence", outcomes[0].case.suite.title());
-    let mut figure = Figure::new(title, x, y);
-    for (scheme, points) in &curves {
-        figure = figure.with(line(Series::line_with_points, scheme.title(), points));
+    let y = Axis::log(format!("{} [{}]", metric.title(), metric.unit)).with_range(0.6 * foot, 1.5 * greatest);
+    let x = Axis::log(about.resolution).with_ticks(&resolutions);
+    let mut figure = Figure::new(format!("{}: convergence", about.title), x, y);
+    for (label, points) in curves.iter().filter(|(_, points)| !points.is_empty()) {
+        figure = figure.with(line(Series::line_with_points, label, points));
     }
-    let start = (0.5 * last, foot * 2f64.powf(order));
-    let slope = Annotation::Slope { start, to_x: last, order: -order, text: format!("order {order}") };
-    if last > first { figure.with_annotation(slope) } else { figure }
+    let [Some(first), Some(last)] = [resolutions.first(), resolutions.last()].map(Option::<&f64>::copied)
+    else {
+        return figure;
+    };
+    let slope = |order: f64| Annotation::Slope {
+        start: (0.5 * last, foot * 2f64.powf(order)),
+        to_x: last,
+        order: -order,
+        text: format!("order {order}"),
+    };
+    if last > first { figure.with_annotation(slope(1.0)).with_annotation(slope(2.0)) } else { figure }
 }
 
-/// The inner radius at the stop over the particle size: all schemes above, near the references below.
-fn stop_radius(outcomes: &[&Outcome]) -> Result<Figure, ValidateError> {
-    let [formula, by_square, _] = verny::references()?;
-    let size = |outcome: &Outcome| 20.0 / f64::from(outcome.case.n);
-    let radius = |outcome: &Outcome| (size(outcome), outcome.curve.first().map_or(f64::NAN, |point| point.1));
-    let sizes = outcomes.iter().map(|outcome| size(outcome));
-    let (least, greatest) = sizes.fold((f64::INFINITY, 0.0f64), |(a, b), d| (a.min(d), b.max(d)));
-    // Flat series rather than annotations, so that they lie within the range of the plot.
-    let flat = |style: fn(&str, &[f64], &[f64]) -> Series, label: &str, radius: f64| {
-        let label = format!("{label}: {radius:.3} mm");
-        style(&label, &[0.9 * least, 1.1 * greatest], &[radius, radius]).with_color(BLACK)
-    };
-    let panel = |y: Axis| {
-        let mut panel = Panel::new(y);
-        for (scheme, points) in by_scheme(outcomes, radius) {
-            panel = panel.with(line(Series::line_with_points, scheme.title(), &points));
+/// Pictures of the fields of the finest run of each kin; those named `start` are alike and drawn once a variant.
+pub fn fields(suite: &str, outcomes: &[&Outcome], image: impl Fn(&Field) -> FieldImage) -> Vec<Picture> {
+    let mut pictures: Vec<Picture> = Vec::new();
+    for outcome in kins(outcomes).into_iter().filter_map(|kin| kin.last().copied()) {
+        let variant = match outcome.case.variant.as_str() {
+            "" => String::new(),
+            variant => format!("-{variant}"),
+        };
+        for field in &outcome.fields {
+            let name = match field.name.as_str() {
+                "start" => format!("{suite}{variant}-start"),
+                moment => format!("{suite}{variant}-{}-{moment}", outcome.case.scheme),
+            };
+            if pictures.iter().all(|picture| picture.name != name) {
+                let caption = format!("{}: {}", field.title, field.label);
+                pictures.push(Picture { name, caption, drawing: Drawing::Field(image(field)) });
+            }
         }
-        panel.with(flat(Series::dashed, "1-D mesh", by_square)).with(flat(
-            Series::dotted,
-            "rigid-plastic formula",
-            formula,
-        ))
-    };
-    let near = Axis::new("r'_0 [mm]").with_range(by_square - 0.08, formula + 0.05);
-    let mut figure = Figure::stacked(
-        "Verney's cylindrical shell: inner radius at the stop (mean of r²)",
-        Axis::log("particle size D_0 [mm]").with_ticks(&[0.5, 1.0, 2.0, 4.0]),
-    )
-    .with_panel(panel(Axis::new("r'_0 [mm]")))
-    .with_panel(panel(near).with_legend(LegendPosition::Hidden));
-    figure.panel_height = 360.0;
-    Ok(figure)
+    }
+    pictures
+}
+
+/// A field over the particles in a frame [mm], as discs.
+pub fn field_image(field: &Field, x_range: (f64, f64), y_range: (f64, f64)) -> FieldImage {
+    let values =
+        sph_io::field_image::Field::new(field.label.clone(), field.values.clone(), ColorMap::Sequential)
+            .with_range(field.range.0, field.range.1);
+    let mut image = FieldImage::new(field.title.clone(), x_range, y_range)
+        .with_particles(field.x.clone(), field.y.clone(), field.size.clone())
+        .with_field(values);
+    (image.x_label, image.y_label) = ("x [mm]".into(), "y [mm]".into());
+    (image.cell, image.width) = (Cell::Disc, 800.0);
+    image
 }

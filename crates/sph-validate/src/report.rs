@@ -1,34 +1,42 @@
 //! Rows of the report: figures, references, orders and gates; the terminal table and `results.json`.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
 use sph_io::table::{Column, Table};
 
-use crate::case::{Case, SchemeName, SuiteName, Tier};
+use crate::case::{Case, SchemeName, Tier};
+use crate::conservation::Conservation;
 use crate::error::ValidateError;
 use crate::gate::{Gate, GateFile, Significant};
-use crate::metric::{Metric, fitted_order, observed_order};
-use crate::suites::{Cost, Outcome};
+use crate::metric::{Kind, Metric, Target, fitted_order, observed_order};
+use crate::outcome::{Cost, Outcome};
+use crate::runner::{Ended, suites_of};
+use crate::suites::{About, ReferenceKind};
 
 /// One figure with everything that judges it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// The problem.
-    pub suite: SuiteName,
+    pub suite: String,
+    /// Its variant; empty where there is one only.
+    pub variant: String,
     /// The scheme.
     pub scheme: SchemeName,
     /// Resolution; absent for the order that is fitted over all of them.
     pub n: Option<u32>,
     /// Name of the figure.
     pub metric: String,
+    /// What kind of figure.
+    pub kind: Kind,
     /// Its value.
     pub value: f64,
     /// Its unit.
-    pub unit: &'static str,
-    /// What it should be; absent for an order.
+    pub unit: String,
+    /// What it should be; absent for an order, and for the finest run where that is the reference of the others.
     pub reference: Option<f64>,
+    /// Distance from the reference.
+    pub error: Option<f64>,
     /// What it must reach; absent for a figure that is only shown.
     pub gate: Option<Gate>,
     /// Order of convergence from the next coarser resolution to this one.
@@ -37,16 +45,35 @@ pub struct Row {
     pub passed: Option<bool>,
 }
 
-/// What one run cost, or why it failed.
+/// What one run conserved and cost, or why it failed.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunRecord {
     /// Which run.
     #[serde(flatten)]
     pub case: Case,
+    /// Drifts of what must be conserved.
+    pub conservation: Option<Conservation>,
     /// What it cost.
     pub cost: Option<Cost>,
+    /// Million particle-steps per second.
+    pub million_particle_steps_per_second: Option<f64>,
     /// Why it gave nothing.
     pub failure: Option<String>,
+}
+
+/// What is said of a suite.
+#[derive(Clone, Debug, Serialize)]
+pub struct SuiteRecord {
+    /// Name in commands and files.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What `n` counts.
+    pub resolution: String,
+    /// What the figures are held against.
+    pub reference: ReferenceKind,
+    /// Where the gates come from.
+    pub source: String,
 }
 
 /// All that a validation found: `results.json`.
@@ -56,6 +83,8 @@ pub struct Report {
     pub command: String,
     /// How much was run.
     pub tier: Tier,
+    /// The problems.
+    pub suites: Vec<SuiteRecord>,
     /// The figures.
     pub rows: Vec<Row>,
     /// The runs.
@@ -63,14 +92,23 @@ pub struct Report {
 }
 
 impl Report {
-    /// Judges the outcomes; failed runs are kept as records.
-    pub fn new(
-        command: String,
-        tier: Tier,
-        results: &[(Case, Result<Outcome, ValidateError>)],
-    ) -> Result<Self, ValidateError> {
-        let outcomes: Vec<&Outcome> = results.iter().filter_map(|(_, result)| result.as_ref().ok()).collect();
-        Ok(Self { command, tier, rows: rows(&outcomes)?, runs: results.iter().map(record).collect() })
+    /// Judges what has ended; failed runs are kept as records.
+    pub fn new(command: String, tier: Tier, ended: &[Ended<'_>]) -> Result<Self, ValidateError> {
+        let (mut suites, mut rows) = (Vec::new(), Vec::new());
+        for about in suites_of(ended).into_iter().map(|suite| suite.about()) {
+            let gates = GateFile::read(about.name, about.gates)?;
+            let of_suite = ended.iter().filter(|ended| ended.job.case.suite == about.name);
+            let outcomes: Vec<&Outcome> = of_suite.filter_map(|ended| ended.result.as_ref().ok()).collect();
+            push_suite(&mut rows, &gates, &about, &outcomes)?;
+            suites.push(SuiteRecord {
+                name: about.name.to_owned(),
+                title: about.title.to_owned(),
+                resolution: about.resolution.to_owned(),
+                reference: about.reference,
+                source: gates.source,
+            });
+        }
+        Ok(Self { command, tier, suites, rows, runs: ended.iter().map(record).collect() })
     }
 
     /// Rows that missed their gate.
@@ -83,11 +121,6 @@ impl Report {
         self.rows.iter().filter(|row| row.passed.is_some()).count()
     }
 
-    /// Suites that have rows, in order.
-    pub fn suites(&self) -> impl Iterator<Item = SuiteName> {
-        SuiteName::ALL.into_iter().filter(|&suite| self.rows.iter().any(|row| row.suite == suite))
-    }
-
     /// Writes `results.json`.
     pub fn write_json(&self, path: &Path) -> Result<(), ValidateError> {
         let fault = |reason: String| ValidateError::Output { path: path.to_owned(), reason };
@@ -97,18 +130,22 @@ impl Report {
     }
 
     /// The table of one suite for the terminal.
-    pub fn table(&self, suite: SuiteName) -> String {
-        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.suite == suite).collect();
+    pub fn table(&self, suite: &SuiteRecord) -> String {
+        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.suite == suite.name).collect();
         let column = |name: &str, cell: &dyn Fn(&Row) -> String| {
             Column::text(name, "", rows.iter().map(|row| cell(row)).collect::<Vec<_>>())
         };
         let optional = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.2}"));
-        Table::new(format!("\n{} (n: {})", suite.title(), suite.resolution_name()))
+        let mut table = Table::new(format!("\n{} (n: {})", suite.title, suite.resolution));
+        if rows.iter().any(|row| !row.variant.is_empty()) {
+            table = table.with(column("variant", &|row| row.variant.clone()));
+        }
+        table
             .with(column("scheme", &|row| row.scheme.to_string()))
             .with(column("n", &|row| row.n.map_or("all".into(), |n| n.to_string())))
             .with(column("metric", &|row| row.metric.clone()))
             .with(column("value", &|row| format!("{:.5}", Significant(row.value))))
-            .with(column("unit", &|row| row.unit.to_owned()))
+            .with(column("unit", &|row| row.unit.clone()))
             .with(column("reference", &|row| {
                 row.reference.map_or(String::new(), |value| format!("{:.5}", Significant(value)))
             }))
@@ -128,79 +165,121 @@ pub fn passed_word(passed: Option<bool>) -> &'static str {
     }
 }
 
-fn record((case, result): &(Case, Result<Outcome, ValidateError>)) -> RunRecord {
-    let (cost, failure) = match result {
-        Ok(outcome) => (Some(outcome.cost), None),
-        Err(error) => (None, Some(error.to_string())),
-    };
-    RunRecord { case: *case, cost, failure }
+fn record(ended: &Ended<'_>) -> RunRecord {
+    let outcome = ended.result.as_ref().ok();
+    RunRecord {
+        case: ended.job.case.clone(),
+        conservation: outcome.map(|outcome| outcome.conservation),
+        cost: outcome.map(|outcome| outcome.cost),
+        million_particle_steps_per_second: outcome.map(|outcome| outcome.cost.rate()),
+        failure: ended.result.as_ref().err().map(ToString::to_string),
+    }
 }
 
-/// Figures of every run, then the orders, suite by suite and scheme by scheme.
-fn rows(outcomes: &[&Outcome]) -> Result<Vec<Row>, ValidateError> {
-    let mut groups: BTreeMap<(SuiteName, SchemeName), Vec<&Outcome>> = BTreeMap::new();
-    for outcome in outcomes {
-        groups.entry((outcome.case.suite, outcome.case.scheme)).or_default().push(outcome);
-    }
-    let mut rows = Vec::new();
-    for ((suite, scheme), mut group) in groups {
-        let gates = GateFile::of(suite)?;
-        group.sort_by_key(|outcome| outcome.case.n);
-        for metric in group[0].measurements.iter().map(|measurement| measurement.metric) {
-            push_metric(&mut rows, &gates, &group, metric);
+/// What a figure of an outcome should be; nothing where the outcome itself is the finest of its kin, which the others
+/// are held against.
+pub fn reference_of(outcome: &Outcome, metric: &Metric, outcomes: &[&Outcome]) -> Option<f64> {
+    match outcome.figure(&metric.name)?.target {
+        Target::Known(reference) => Some(reference),
+        Target::Finest => {
+            let kin = outcomes.iter().filter(|other| other.case.is_kin_of(&outcome.case));
+            let finest = kin.max_by_key(|other| other.case.n)?;
+            (finest.case.n > outcome.case.n)
+                .then(|| finest.figure(&metric.name).map(|figure| figure.value))?
         }
-        let with_order = group[0].measurements.iter().filter(|m| m.metric.has_order());
-        let orders = with_order.filter_map(|m| order_row(suite, scheme, &gates, &group, m.metric));
-        rows.extend(orders);
     }
-    Ok(rows)
+}
+
+/// Distance of a figure from what it should be; not a number where that is not known.
+pub fn error_of(outcome: &Outcome, metric: &Metric, outcomes: &[&Outcome]) -> f64 {
+    let distance = || {
+        let figure = outcome.figure(&metric.name)?;
+        Some((figure.value - reference_of(outcome, metric, outcomes)?).abs())
+    };
+    distance().unwrap_or(f64::NAN)
+}
+
+/// Figures of every run, then the orders, variant by variant and scheme by scheme.
+fn push_suite(
+    rows: &mut Vec<Row>,
+    gates: &GateFile,
+    about: &About,
+    outcomes: &[&Outcome],
+) -> Result<(), ValidateError> {
+    let mut seen: Vec<&Case> = Vec::new();
+    for first in outcomes {
+        if seen.iter().any(|case| case.is_kin_of(&first.case)) {
+            continue;
+        }
+        seen.push(&first.case);
+        let mut kin: Vec<&Outcome> =
+            outcomes.iter().copied().filter(|outcome| outcome.case.is_kin_of(&first.case)).collect();
+        kin.sort_by_key(|outcome| outcome.case.n);
+        let metrics: Vec<Metric> = kin[0].figures().map(|figure| figure.metric).collect();
+        let names: Vec<&str> = metrics.iter().map(|metric| metric.name.as_ref()).collect();
+        if let Some(metric) = gates.unmeasured(&first.case, &names) {
+            let reason = format!("`{metric}` is no figure of {}; it has {}", first.case, names.join(", "));
+            return Err(ValidateError::Gates { suite: about.name.to_owned(), reason });
+        }
+        metrics.iter().for_each(|metric| push_metric(rows, gates, &kin, metric));
+        let with_order = metrics.iter().filter(|metric| metric.has_order());
+        rows.extend(with_order.filter_map(|metric| order_row(gates, &kin, metric)));
+    }
+    Ok(())
 }
 
 /// The rows of one metric, coarse to fine.
-fn push_metric(rows: &mut Vec<Row>, gates: &GateFile, group: &[&Outcome], metric: Metric) {
+fn push_metric(rows: &mut Vec<Row>, gates: &GateFile, kin: &[&Outcome], metric: &Metric) {
     let mut coarser = None;
-    for outcome in group {
-        let case = outcome.case;
-        let Some(measurement) = outcome.measurements.iter().find(|m| m.metric == metric) else { continue };
-        let gate = gates.of_measurement(case, measurement);
-        let this = (case.n, measurement.error());
-        let order = coarser.filter(|_| metric.has_order()).map(|coarse| observed_order(coarse, this));
-        coarser = Some(this);
+    for outcome in kin {
+        let Some(figure) = outcome.figure(&metric.name) else { continue };
+        let case = &outcome.case;
+        let reference = reference_of(outcome, metric, kin);
+        let gate = reference.and_then(|reference| gates.of_figure(case, &metric.name, reference));
+        let error = reference.map(|reference| (figure.value - reference).abs());
+        let this = error.map(|error| (case.n, error));
+        let orders = coarser.zip(this).filter(|_| metric.has_order());
+        let order = orders.map(|(coarse, this)| observed_order(coarse, this));
+        coarser = this;
         rows.push(Row {
-            suite: case.suite,
+            suite: case.suite.clone(),
+            variant: case.variant.clone(),
             scheme: case.scheme,
             n: Some(case.n),
-            metric: metric.as_str().to_owned(),
-            value: measurement.value,
-            unit: metric.unit(),
-            reference: Some(measurement.reference),
+            metric: metric.name.to_string(),
+            kind: metric.kind,
+            value: figure.value,
+            unit: metric.unit.to_string(),
+            reference,
+            error,
             gate,
             order,
-            passed: gate.map(|gate| gate.passes(measurement.value, measurement.reference)),
+            passed: gate.zip(reference).map(|(gate, reference)| gate.passes(figure.value, reference)),
         });
     }
 }
 
 /// The order fitted over all resolutions; its gate is judged from three of them on.
-fn order_row(
-    suite: SuiteName,
-    scheme: SchemeName,
-    gates: &GateFile,
-    group: &[&Outcome],
-    metric: Metric,
-) -> Option<Row> {
-    let error = |outcome: &&Outcome| Some((outcome.case.n, outcome.error(metric)?));
-    let errors: Vec<(u32, f64)> = group.iter().filter_map(error).collect();
+fn order_row(gates: &GateFile, kin: &[&Outcome], metric: &Metric) -> Option<Row> {
+    let error = |outcome: &&Outcome| {
+        let reference = reference_of(outcome, metric, kin)?;
+        Some((outcome.case.n, (outcome.figure(&metric.name)?.value - reference).abs()))
+    };
+    let errors: Vec<(u32, f64)> = kin.iter().filter_map(error).collect();
     let value = fitted_order(&errors)?;
-    let gate = gates.of_order(scheme, metric).filter(|_| errors.len() >= 3);
+    let case = &kin[0].case;
+    let gate = gates.of_order(case, &metric.name).filter(|_| errors.len() >= 3);
     Some(Row {
-        suite,
-        scheme,
+        suite: case.suite.clone(),
+        variant: case.variant.clone(),
+        scheme: case.scheme,
         n: None,
-        metric: format!("{}_order", metric.as_str()),
+        metric: format!("{}_order", metric.name),
+        kind: metric.kind,
         value,
-        unit: "-",
+        unit: "-".into(),
         reference: None,
+        error: None,
         gate,
         order: Some(value),
         passed: gate.map(|gate| gate.passes(value, 0.0)),
@@ -208,61 +287,5 @@ fn order_row(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::metric::Measurement;
-
-    fn outcome(n: u32, error: f64) -> (Case, Result<Outcome, ValidateError>) {
-        let case = Case { suite: SuiteName::SoundWave, scheme: SchemeName::TkcHancock, n };
-        let measurements = vec![Measurement::error_of(Metric::VelocityL1, error)];
-        let cost = Cost::default();
-        (case, Ok(Outcome { case, measurements, curve: Vec::new(), fields: Vec::new(), cost }))
-    }
-
-    fn report(errors: [f64; 3]) -> Report {
-        let results = [outcome(100, errors[0]), outcome(200, errors[1]), outcome(400, errors[2])];
-        Report::new("test".into(), Tier::Quick, &results).expect("good gates")
-    }
-
-    #[test]
-    fn good_figures_pass_every_gate() {
-        let report = report([0.0065, 0.0008, 0.0001]);
-        assert_eq!(
-            (report.n_gates(), report.failures().count()),
-            (4, 0),
-            "{}",
-            report.table(SuiteName::SoundWave)
-        );
-    }
-
-    #[test]
-    fn one_bad_figure_fails_its_own_gate_and_that_of_the_order() {
-        let report = report([0.0065, 0.0008, 0.0018]);
-        let failed: Vec<_> = report.failures().map(|row| (row.n, row.metric.as_str())).collect();
-        assert_eq!(failed, [(Some(400), "velocity_l1"), (None, "velocity_l1_order")]);
-    }
-
-    #[test]
-    fn not_a_number_fails() {
-        assert!(report([f64::NAN, 0.0018, 0.0004]).failures().count() >= 1);
-    }
-
-    #[test]
-    fn json_has_the_agreed_fields() {
-        let json = serde_json::to_value(report([0.0065, 0.0008, 0.0001])).expect("JSON");
-        let row = &json["rows"][1];
-        assert_eq!(
-            (&row["suite"], &row["scheme"], &row["n"]),
-            (&"sound-wave".into(), &"tkc-hancock".into(), &200.into())
-        );
-        assert_eq!(
-            (&row["metric"], &row["unit"], &row["passed"]),
-            (&"velocity_l1".into(), &"m/s".into(), &true.into())
-        );
-        assert!(
-            row["gate"]["error_at_most"].as_f64().is_some_and(|limit| limit > 0.0008 && limit <= 0.003485)
-        );
-        assert!(row["order"].as_f64().is_some_and(|order| (order - 3.022).abs() < 0.01));
-        assert_eq!(row["reference"], 0.0);
-    }
-}
+#[path = "report_tests.rs"]
+mod tests;

@@ -3,12 +3,49 @@
 //! A case gives the same bits whatever runs beside it.
 
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::case::Case;
+use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
-use crate::suites::{self, Outcome};
+use crate::outcome::Outcome;
+use crate::suites::Suite;
+use crate::watch::Watch;
+
+/// A run to be done.
+#[derive(Clone)]
+pub struct Job<'s> {
+    /// Its suite.
+    pub suite: &'s dyn Suite,
+    /// Which run.
+    pub case: Case,
+}
+
+/// A run that has ended.
+pub struct Ended<'s> {
+    /// Which run.
+    pub job: Job<'s>,
+    /// What it gave.
+    pub result: Result<Outcome, ValidateError>,
+}
+
+/// The runs of a tier: all of `suites`, those with one of `schemes`.
+pub fn plan<'s>(suites: &[&'s dyn Suite], schemes: &[SchemeName], tier: Tier) -> Vec<Job<'s>> {
+    let of_suite =
+        |&suite: &&'s dyn Suite| suite.cases(tier).into_iter().map(move |case| Job { suite, case });
+    suites.iter().flat_map(of_suite).filter(|job| schemes.contains(&job.case.scheme)).collect()
+}
+
+/// The suites of runs, each once, in the order of their first runs.
+pub fn suites_of<'s>(ended: &[Ended<'s>]) -> Vec<&'s dyn Suite> {
+    let mut suites: Vec<&'s dyn Suite> = Vec::new();
+    for suite in ended.iter().map(|ended| ended.job.suite) {
+        if suites.iter().all(|other| other.about().name != suite.about().name) {
+            suites.push(suite);
+        }
+    }
+    suites
+}
 
 /// What is told of the progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,27 +58,28 @@ pub struct Status {
     pub share: f64,
 }
 
-/// Called from the threads of the runs: with the status, and with the case that has just ended.
-pub type Listener<'a> = &'a (dyn Fn(Status, Option<(Case, &Result<Outcome, ValidateError>)>) + Sync);
+/// Called from the threads of the runs: with the status, and with the run that has just ended.
+pub type Listener<'a> = &'a (dyn Fn(Status, Option<(&Case, &Result<Outcome, ValidateError>)>) + Sync);
 
-/// Runs `cases` on `threads` threads; results in the order of `cases`.
-pub fn run_all(
-    cases: &[Case],
+/// Runs `jobs` on `threads` threads; results in the order of `jobs`. Once `interrupt` is set, runs under way stop.
+pub fn run_all<'s>(
+    jobs: Vec<Job<'s>>,
     threads: usize,
+    interrupt: &AtomicBool,
     listener: Listener<'_>,
-) -> Vec<(Case, Result<Outcome, ValidateError>)> {
-    let meter = Meter::new(cases);
-    let mut order: Vec<usize> = (0..cases.len()).collect();
-    order.sort_by(|&a, &b| suites::work(cases[b]).total_cmp(&suites::work(cases[a])));
+) -> Vec<Ended<'s>> {
+    let meter = Meter::new(&jobs);
+    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    order.sort_by(|&a, &b| meter.work[b].total_cmp(&meter.work[a]));
     let queue = Mutex::new(VecDeque::from(order));
     let finished = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, cases.len().max(1)) {
+        for _ in 0..threads.clamp(1, jobs.len().max(1)) {
             scope.spawn(|| {
                 let next = || lock(&queue).pop_front();
                 while let Some(k) = next() {
-                    let result = run_one(cases[k], |share| listener(meter.note(k, share), None));
-                    listener(meter.finish(k), Some((cases[k], &result)));
+                    let result = run_one(&jobs[k], interrupt, &|share| listener(meter.note(k, share), None));
+                    listener(meter.finish(k), Some((&jobs[k].case, &result)));
                     lock(&finished).push((k, result));
                 }
             });
@@ -49,15 +87,22 @@ pub fn run_all(
     });
     let mut finished = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
     finished.sort_by_key(|&(k, _)| k);
-    finished.into_iter().map(|(k, result)| (cases[k], result)).collect()
+    let results = finished.into_iter().map(|(_, result)| result);
+    jobs.into_iter().zip(results).map(|(job, result)| Ended { job, result }).collect()
 }
 
-/// One case, with a pool of one thread for all of its parallel loops.
-fn run_one(case: Case, progress: impl Fn(f64) + Sync + Send) -> Result<Outcome, ValidateError> {
+/// One run, with a pool of one thread for all of its parallel loops.
+fn run_one(
+    job: &Job<'_>,
+    interrupt: &AtomicBool,
+    tell: &(dyn Fn(f64) + Sync),
+) -> Result<Outcome, ValidateError> {
+    let watch = Watch::new(tell, interrupt);
+    watch.check()?;
     match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
-        Ok(pool) => pool.install(|| suites::run(case, &progress)),
+        Ok(pool) => pool.install(|| job.suite.run(&job.case, watch)),
         // Without a pool of its own a case still runs, in the shared one.
-        Err(_) => suites::run(case, &progress),
+        Err(_) => job.suite.run(&job.case, watch),
     }
 }
 
@@ -74,10 +119,10 @@ struct Meter {
 }
 
 impl Meter {
-    fn new(cases: &[Case]) -> Self {
+    fn new(jobs: &[Job<'_>]) -> Self {
         Self {
-            work: cases.iter().map(|&case| suites::work(case)).collect(),
-            shares: cases.iter().map(|_| AtomicU64::new(0)).collect(),
+            work: jobs.iter().map(|job| job.suite.work(&job.case)).collect(),
+            shares: jobs.iter().map(|_| AtomicU64::new(0)).collect(),
             done: AtomicU64::new(0),
         }
     }

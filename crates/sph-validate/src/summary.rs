@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
-use crate::case::{SchemeName, SuiteName};
-use crate::gate::{GateFile, Significant};
-use crate::report::{Report, Row};
+use crate::case::SchemeName;
+use crate::gate::Significant;
+use crate::plots::Written;
+use crate::report::{Report, Row, SuiteRecord};
 
 /// The whole document. Plots are taken to lie beside it.
-pub fn summary(report: &Report, plots: &[(SuiteName, String)]) -> String {
+pub fn summary(report: &Report, pictures: &[Written]) -> String {
     let mut text = String::from("# Validation\n\n");
     let n_failed = report.failures().count();
     let _ = writeln!(text, "Made by `{}` ({} tier).", report.command, report.tier.as_str());
@@ -18,10 +19,10 @@ pub fn summary(report: &Report, plots: &[(SuiteName, String)]) -> String {
         "(a twentieth allowed). Order: of the whole row, by least squares in ln n. Set-ups, references and gates: ",
         "`validation/<suite>/`.\n\n",
     ));
-    for suite in report.suites() {
+    for suite in &report.suites {
         push_suite(&mut text, report, suite);
-        for (_, plot) in plots.iter().filter(|(of, _)| *of == suite) {
-            let _ = writeln!(text, "![{}]({plot})\n", suite.title());
+        for picture in pictures.iter().filter(|picture| picture.suite == suite.name) {
+            let _ = writeln!(text, "![{}]({})\n", picture.caption, picture.file);
         }
     }
     push_failures(&mut text, report);
@@ -29,43 +30,50 @@ pub fn summary(report: &Report, plots: &[(SuiteName, String)]) -> String {
     text
 }
 
-fn push_suite(text: &mut String, report: &Report, suite: SuiteName) {
-    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.suite == suite).collect();
+fn push_suite(text: &mut String, report: &Report, suite: &SuiteRecord) {
+    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.suite == suite.name).collect();
     let mut resolutions: Vec<u32> = rows.iter().filter_map(|row| row.n).collect();
     resolutions.sort_unstable();
     resolutions.dedup();
-    let _ = writeln!(text, "## {}\n\nn: {}.", suite.title(), suite.resolution_name());
-    if let Ok(gates) = GateFile::of(suite) {
-        let _ = writeln!(text, "Source of the gates: {}.", gates.source);
+    let _ = writeln!(
+        text,
+        "## {}\n\nn: {}. Reference: {}.",
+        suite.title,
+        suite.resolution,
+        suite.reference.title()
+    );
+    if !suite.source.is_empty() {
+        let _ = writeln!(text, "Source of the gates: {}.", suite.source);
     }
     let heads: Vec<String> = resolutions.iter().map(|n| format!(" n = {n} |")).collect();
     let _ = writeln!(text, "\n| scheme | figure | reference |{} order |", heads.concat());
     let _ = writeln!(text, "|---|---|---|{}---|", "---|".repeat(resolutions.len()));
-    let mut seen: Vec<(SchemeName, &str)> = Vec::new();
+    let mut seen: Vec<(&str, SchemeName, &str)> = Vec::new();
     for row in rows.iter().filter(|row| row.n.is_some()) {
-        let line = (row.scheme, row.metric.as_str());
+        let line = (row.variant.as_str(), row.scheme, row.metric.as_str());
         if !seen.contains(&line) {
             seen.push(line);
-            push_line(text, &rows, line, &resolutions);
+            push_line(text, &rows, row, &resolutions);
         }
     }
     text.push('\n');
 }
 
-/// One line of a suite's table: a figure of a scheme over the resolutions.
-fn push_line(text: &mut String, rows: &[&Row], (scheme, metric): (SchemeName, &str), resolutions: &[u32]) {
-    let of_scheme = || rows.iter().filter(move |row| row.scheme == scheme);
-    let cells: Vec<&&Row> = of_scheme().filter(|row| row.metric == metric).collect();
-    let Some(first) = cells.first() else { return };
+/// One line of a suite's table: a figure of a variant and scheme over the resolutions.
+fn push_line(text: &mut String, rows: &[&Row], first: &Row, resolutions: &[u32]) {
+    let is_kin = |row: &&&Row| (&row.variant, row.scheme) == (&first.variant, first.scheme);
+    let cells: Vec<&&Row> = rows.iter().filter(is_kin).filter(|row| row.metric == first.metric).collect();
     let reference = first.reference.filter(|&value| value != 0.0);
     let reference = reference.map_or(String::new(), |value| format!("{:.5}", Significant(value)));
-    let _ =
-        write!(text, "| {} | {} [{}] | {reference} |", scheme.title(), metric.replace('_', " "), first.unit);
+    let variant = if first.variant.is_empty() { String::new() } else { format!("{}, ", first.variant) };
+    let figure = first.metric.replace('_', " ");
+    let _ = write!(text, "| {variant}{} | {figure} [{}] | {reference} |", first.scheme.title(), first.unit);
     for n in resolutions {
         let cell = cells.iter().find(|row| row.n == Some(*n));
         let _ = write!(text, " {} |", cell.map_or(String::new(), |row| shown(row)));
     }
-    let order = of_scheme().find(|row| row.n.is_none() && row.metric == format!("{metric}_order"));
+    let name = format!("{}_order", first.metric);
+    let order = rows.iter().filter(is_kin).find(|row| row.n.is_none() && row.metric == name);
     let _ = writeln!(text, " {} |", order.map_or(String::new(), |row| shown(row)));
 }
 
@@ -86,20 +94,23 @@ fn push_failures(text: &mut String, report: &Report) {
 
 fn push_costs(text: &mut String, report: &Report) {
     text.push_str("## Cost\n\nOne core a run; runs side by side share the machine.\n\n");
-    text.push_str("| suite | scheme | n | particles | steps | wall time, s | million particle-steps/s |\n");
-    text.push_str("|---|---|---|---|---|---|---|\n");
+    text.push_str(
+        "| suite | variant | scheme | n | particles | steps | wall time, s | million particle-steps/s |\n",
+    );
+    text.push_str("|---|---|---|---|---|---|---|---|\n");
     for run in &report.runs {
         let Some(cost) = run.cost else { continue };
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {:.1} | {:.2} |",
+            "| {} | {} | {} | {} | {} | {} | {:.1} | {:.2} |",
             run.case.suite,
+            run.case.variant,
             run.case.scheme.title(),
             run.case.n,
             cost.particles,
             cost.steps,
             cost.seconds,
-            cost.million_particle_steps_per_second
+            cost.rate()
         );
     }
 }

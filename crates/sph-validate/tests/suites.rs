@@ -1,63 +1,94 @@
 //! The smallest rows of the quick tier, by the same code and against the same gates as `sph-validate`.
 
-use sph_validate::case::{Case, SchemeName, SuiteName, Tier};
-use sph_validate::report::Report;
-use sph_validate::runner::run_all;
+use std::sync::atomic::AtomicBool;
 
-/// Runs `n` of all `schemes`; every gate of these runs must pass.
-fn gates_pass(suite: SuiteName, schemes: &[SchemeName], resolutions: &[u32]) -> Report {
-    let of_scheme = |&scheme| resolutions.iter().map(move |&n| Case { suite, scheme, n });
-    let cases: Vec<Case> = schemes.iter().flat_map(of_scheme).collect();
-    let results = run_all(&cases, 2, &|_, _| ());
-    for (_, result) in &results {
-        assert!(result.is_ok(), "{}", result.as_ref().expect_err("a failure"));
+use sph_validate::case::{Case, SchemeName, Tier};
+use sph_validate::conservation::Conservation;
+use sph_validate::gate::GateFile;
+use sph_validate::report::Report;
+use sph_validate::runner::{Ended, Job, run_all};
+use sph_validate::suites;
+
+fn run(cases: &[Case], threads: usize) -> Vec<Ended<'static>> {
+    let job = |case: &Case| Job { suite: suites::find(&case.suite).expect("a suite"), case: case.clone() };
+    run_all(cases.iter().map(job).collect(), threads, &AtomicBool::new(false), &|_, _| ())
+}
+
+/// Runs `cases`; every gate of these runs must pass.
+fn gates_pass(cases: &[Case]) -> Report {
+    let ended = run(cases, 2);
+    for ended in &ended {
+        assert!(ended.result.is_ok(), "{}", ended.result.as_ref().expect_err("a failure"));
     }
-    let report = Report::new("test".into(), Tier::Quick, &results).expect("readable gates");
-    println!("{}", report.table(suite));
+    let report = Report::new("test".into(), Tier::Quick, &ended).expect("readable gates");
+    println!("{}", report.table(&report.suites[0]));
     assert!(report.n_gates() > 0, "nothing was judged");
     let missed: Vec<_> = report.failures().collect();
     assert!(missed.is_empty(), "{missed:#?}");
     report
 }
 
+/// Each suite in both tiers: its own name in its runs, no run twice, three resolutions or more in the full tier, and
+/// gates of what must be conserved.
+#[test]
+fn suites_are_as_they_should_be() {
+    for suite in suites::ALL {
+        let about = suite.about();
+        let gates = GateFile::read(about.name, about.gates).expect("readable gates");
+        for tier in [Tier::Quick, Tier::Full] {
+            let cases = suite.cases(tier);
+            assert!(!cases.is_empty(), "{}", about.name);
+            for case in &cases {
+                assert_eq!(case.suite, about.name);
+                assert!(suite.work(case) > 0.0, "{case}");
+                assert_eq!(cases.iter().filter(|other| *other == case).count(), 1, "{case} twice");
+                let kin = cases.iter().filter(|other| other.is_kin_of(case)).count();
+                assert!(tier == Tier::Quick || kin >= 3, "{case}: {kin} resolutions show no order");
+                for metric in [Conservation::MASS, Conservation::MOMENTUM, Conservation::ENERGY] {
+                    assert!(gates.of_figure(case, &metric.name, 0.0).is_some(), "{case}: {}", metric.name);
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn riemann_problem_with_every_scheme() {
-    gates_pass(SuiteName::Riemann, &SchemeName::ALL, &[100]);
+    gates_pass(&Case::grid("riemann", &SchemeName::ALL, &[100]));
 }
 
 #[test]
 fn riemann_problem_converges() {
-    let report = gates_pass(SuiteName::Riemann, &[SchemeName::TkcHancock], &[100, 200, 400]);
+    let report = gates_pass(&Case::grid("riemann", &[SchemeName::TkcHancock], &[100, 200, 400]));
     assert!(report.rows.iter().any(|row| row.metric == "stress_l1_order" && row.passed == Some(true)));
 }
 
 #[test]
 fn sound_wave_with_every_scheme() {
-    gates_pass(SuiteName::SoundWave, &SchemeName::ALL, &[100]);
+    gates_pass(&Case::grid("sound-wave", &SchemeName::ALL, &[100]));
 }
 
 #[test]
 fn sound_wave_converges() {
-    let report = gates_pass(SuiteName::SoundWave, &[SchemeName::TkcHancock], &[100, 200, 400]);
+    let report = gates_pass(&Case::grid("sound-wave", &[SchemeName::TkcHancock], &[100, 200, 400]));
     assert!(report.rows.iter().any(|row| row.metric == "velocity_l1_order" && row.passed == Some(true)));
 }
 
 #[test]
 fn shell_with_every_scheme() {
-    gates_pass(SuiteName::Verny, &SchemeName::ALL, &[5]);
+    gates_pass(&Case::grid("verny", &SchemeName::ALL, &[5]));
 }
 
 /// A run gives the same bits alone and beside another one.
 #[test]
 fn figures_do_not_depend_on_what_runs_beside() {
-    let case = |scheme| Case { suite: SuiteName::Riemann, scheme, n: 50 };
-    let cases = [case(SchemeName::Csph), case(SchemeName::TkcHancock)];
+    let cases = Case::grid("riemann", &[SchemeName::Csph, SchemeName::TkcHancock], &[50]);
     let bits = |threads| -> Vec<u64> {
-        let results = run_all(&cases, threads, &|_, _| ());
-        let order: Vec<Case> = results.iter().map(|(case, _)| *case).collect();
+        let ended = run(&cases, threads);
+        let order: Vec<Case> = ended.iter().map(|ended| ended.job.case.clone()).collect();
         assert_eq!(order, cases, "results in the order of the cases");
-        let outcomes = results.into_iter().map(|(_, result)| result.expect("a result"));
-        outcomes.flat_map(|outcome| outcome.measurements).map(|m| m.value.to_bits()).collect()
+        let outcomes: Vec<_> = ended.into_iter().map(|ended| ended.result.expect("a result")).collect();
+        outcomes.iter().flat_map(|outcome| outcome.figures()).map(|figure| figure.value.to_bits()).collect()
     };
     assert_eq!(bits(1), bits(2));
 }

@@ -4,17 +4,20 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use sph_io::progress::{Mode, Progress};
-use sph_validate::case::{Case, SchemeName, SuiteName, Tier};
+use sph_validate::case::{Case, SchemeName, Tier};
 use sph_validate::error::ValidateError;
 use sph_validate::gate::Significant;
-use sph_validate::plots::write_plots;
+use sph_validate::outcome::Outcome;
+use sph_validate::plots::write_pictures;
 use sph_validate::report::Report;
-use sph_validate::runner::{Status, run_all};
-use sph_validate::suites::{Outcome, plan};
+use sph_validate::runner::{Ended, Status, plan, run_all};
+use sph_validate::suites::{self, Suite};
 use sph_validate::summary::summary;
 
 const GATE_MISSED: u8 = 4;
@@ -27,8 +30,8 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     tier: Tier,
     /// Only this problem; may be given more than once.
-    #[arg(long, value_enum)]
-    suite: Vec<SuiteName>,
+    #[arg(long, value_parser = PossibleValuesParser::new(suites::names()))]
+    suite: Vec<String>,
     /// Only this scheme; may be given more than once.
     #[arg(long, value_enum)]
     scheme: Vec<SchemeName>,
@@ -53,24 +56,26 @@ fn main() -> ExitCode {
 
 fn validate(arguments: &Arguments) -> Result<u8, ValidateError> {
     create_folder(&arguments.out)?;
-    let suites = if arguments.suite.is_empty() { &SuiteName::ALL[..] } else { &arguments.suite };
+    let is_asked =
+        |name: &str| arguments.suite.is_empty() || arguments.suite.iter().any(|asked| asked == name);
+    let suites: Vec<&dyn Suite> =
+        suites::ALL.iter().copied().filter(|suite| is_asked(suite.about().name)).collect();
     let schemes = if arguments.scheme.is_empty() { &SchemeName::ALL[..] } else { &arguments.scheme };
-    let mut cases = plan(suites, schemes, arguments.tier);
-    cases.sort_unstable();
-    cases.dedup();
+    let jobs = plan(&suites, schemes, arguments.tier);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.map_or(cores, usize::from);
     let label = format!("validation, {} tier, {threads} threads", arguments.tier.as_str());
     let progress = Mutex::new(Progress::new(1.0, label, Mode::Auto));
-    let results = run_all(&cases, threads, &|status, ended| {
+    let interrupt = AtomicBool::new(false);
+    let ended = run_all(jobs, threads, &interrupt, &|status, ended| {
         show(&mut progress.lock().unwrap_or_else(PoisonError::into_inner), status, ended);
     });
     let progress = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
-    progress.finish(&format!("{} runs", cases.len()));
-    let report = Report::new(command(arguments), arguments.tier, &results)?;
-    write_files(&report, &results, &arguments.out)?;
+    progress.finish(&format!("{} runs", ended.len()));
+    let report = Report::new(command(arguments), arguments.tier, &ended)?;
+    write_files(&report, &ended, &arguments.out)?;
     print_tables(&report);
-    let failed = results.iter().filter_map(|(_, result)| result.as_ref().err());
+    let failed = ended.iter().filter_map(|ended| ended.result.as_ref().err());
     let worst = failed.inspect(|error| eprintln!("error: {error}")).map(ValidateError::exit_code).max();
     let gate_missed = report.failures().next().is_some();
     Ok(worst.unwrap_or(if gate_missed { GATE_MISSED } else { 0 }))
@@ -89,21 +94,16 @@ fn command(arguments: &Arguments) -> String {
     words.join(" ")
 }
 
-fn write_files(
-    report: &Report,
-    results: &[(Case, Result<Outcome, ValidateError>)],
-    folder: &Path,
-) -> Result<(), ValidateError> {
-    let outcomes: Vec<&Outcome> = results.iter().filter_map(|(_, result)| result.as_ref().ok()).collect();
+fn write_files(report: &Report, ended: &[Ended<'_>], folder: &Path) -> Result<(), ValidateError> {
     report.write_json(&folder.join("results.json"))?;
-    let plots = write_plots(&outcomes, folder)?;
+    let pictures = write_pictures(ended, folder)?;
     let path = folder.join("summary.md");
-    sph_io::write_atomic(&path, summary(report, &plots).as_bytes())
+    sph_io::write_atomic(&path, summary(report, &pictures).as_bytes())
         .map_err(|error| ValidateError::Output { path, reason: error.to_string() })
 }
 
 fn print_tables(report: &Report) {
-    for suite in report.suites() {
+    for suite in &report.suites {
         println!("{}", report.table(suite));
     }
     let missed: Vec<_> = report.failures().collect();
@@ -112,8 +112,9 @@ fn print_tables(report: &Report) {
         let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
         let gate = row.gate.map_or(String::new(), |gate| gate.to_string());
         println!(
-            "missed: {} {} {n}: {} = {} {}, {gate}",
+            "missed: {} {}{} {n}: {} = {} {}, {gate}",
             row.suite,
+            if row.variant.is_empty() { String::new() } else { format!("{} ", row.variant) },
             row.scheme,
             row.metric,
             Significant(row.value),
@@ -123,7 +124,7 @@ fn print_tables(report: &Report) {
 }
 
 /// Shows where the runs stand; a run that has ended is noted.
-fn show(progress: &mut Progress, status: Status, ended: Option<(Case, &Result<Outcome, ValidateError>)>) {
+fn show(progress: &mut Progress, status: Status, ended: Option<(&Case, &Result<Outcome, ValidateError>)>) {
     match ended {
         Some((case, Ok(outcome))) => progress.note(&format!("{case}: {:.1} s", outcome.cost.seconds)),
         Some((case, Err(error))) => progress.note(&format!("{case}: FAILED, {error}")),

@@ -1,209 +1,135 @@
-//! The suites: each sets up one problem for the solver, runs it and measures it.
+//! The suites: each sets up one problem, runs it with the real program and measures it.
 //!
-//! A suite is four functions: the resolutions of a tier, the work of a run (for the time left), the run itself, and
-//! the reference curve of its plot. Nothing in a suite decides whether a figure is good enough: that is in
-//! [`crate::gate`].
+//! # A new suite
+//!
+//! is one file here, one folder `validation/<name>/` (`README.md` with its sources, `gates.ron`), and one line in
+//! [`ALL`]. The file has a type that is a [`Suite`]; what a suite says and does:
+//!
+//! * [`Suite::about`]: names, what its resolution counts, what kind of reference it has, the text of its gates
+//!   (`include_str!`);
+//! * [`Suite::cases`]: the runs of a tier. A run is a [`Case`]: variant of the problem (a word: a material, a speed, an
+//!   angle, `"3d"`; empty where there is one only), scheme, resolution. At least three resolutions a variant in the full
+//!   tier, so that there is an order;
+//! * [`Suite::work`]: particle-steps of a run, an estimate for the time left and for the order of runs;
+//! * [`Suite::run`]: one run. Set up particles, make a [`Run`](crate::run::Run) (or a window), step, measure. Ends with
+//!   [`Run::outcome`](crate::run::Run::outcome), which adds what was conserved and what it cost. A suite with a moving
+//!   window makes the [`Outcome`] itself; its [`Conservation`](crate::conservation::Conservation) is the closure of the
+//!   window's ledger, and it asks [`Watch::check`](crate::watch::Watch::check) in each step;
+//! * [`Suite::pictures`]: plots of all of its outcomes. What is drawn comes from the outcomes (figures, curves, fields),
+//!   never from anywhere else: they may have been read from disk. Without it there is one plot of convergence for each
+//!   figure that has an order.
+//!
+//! Figures are constants of type [`Metric`](crate::metric::Metric), in the file of the suite:
+//! `const STRESS_L1: Metric = Metric::norm("stress_l1", "GPa");`. A figure is given with what it should be:
+//! [`Measurement::error_of`](crate::metric::Measurement::error_of) (norms and shifts; it should be zero),
+//! [`Measurement::new`](crate::metric::Measurement::new) (a value with its reference), or, where no answer is known,
+//! [`Measurement::against_finest`](crate::metric::Measurement::against_finest) (the finest run of the same variant and
+//! scheme is the answer).
+//!
+//! Nothing in a suite decides whether a figure is good enough: that is in [`crate::gate`], from the table of the suite's
+//! folder. A gate of a figure that no run measures is an error. The drifts `mass_drift`, `momentum_drift`,
+//! `energy_drift` and `angular_momentum_drift` are figures of every run; the first three must have a gate in every
+//! suite. A suite draws no random number without a fixed seed: a run gives the same bits each time, on any number of
+//! threads.
 
 pub mod riemann;
 pub mod sound_wave;
 pub mod verny;
 
-use std::time::Instant;
+use sph_io::field_image::FieldImage;
+use sph_io::plot::Figure;
 
-use sph_core::{Dim2, Domain, Particle, Particles};
-use sph_materials::{Material, library};
-use sph_riemann::{Settings, Simulation};
-
-use crate::case::{Case, SchemeName, SuiteName, Tier};
+use crate::case::{Case, Tier};
 use crate::error::ValidateError;
-use crate::metric::{Measurement, Metric};
+use crate::outcome::Outcome;
+use crate::plots;
+use crate::watch::Watch;
 
-/// Called with the share of the run that is done, 0 to 1.
-pub type Progress<'a> = &'a dyn Fn(f64);
+/// All suites, in the order of the report.
+pub static ALL: &[&dyn Suite] = &[&riemann::Riemann, &sound_wave::SoundWave, &verny::Verny];
 
-/// What a run gave.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// Which run.
-    pub case: Case,
-    /// Its figures.
-    pub measurements: Vec<Measurement>,
-    /// Its curve in the plot of the suite, in the units of the plot.
-    pub curve: Vec<(f64, f64)>,
-    /// Fields over the particles, for pictures.
-    pub fields: Vec<Field>,
-    /// What it cost.
-    pub cost: Cost,
-}
+/// A problem with a known answer.
+pub trait Suite: Sync {
+    /// What it is.
+    fn about(&self) -> About;
 
-impl Outcome {
-    /// Distance of a figure from its reference, if the run has it.
-    pub fn error(&self, metric: Metric) -> Option<f64> {
-        self.measurements.iter().find(|measurement| measurement.metric == metric).map(Measurement::error)
+    /// The runs of a tier, variant by variant, scheme by scheme, coarse to fine.
+    fn cases(&self, tier: Tier) -> Vec<Case>;
+
+    /// Work of a run: particle-steps, weighted by [`SchemeName::price`](crate::case::SchemeName::price).
+    fn work(&self, case: &Case) -> f64;
+
+    /// One run.
+    fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError>;
+
+    /// The pictures of its outcomes, which are in the order of [`Self::cases`] and at least one.
+    fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
+        Ok(plots::convergences(&self.about(), outcomes))
     }
 }
 
-/// A scalar over the particles at one time.
-#[derive(Clone, Debug)]
-pub struct Field {
-    /// When, as a word for file names.
-    pub moment: &'static str,
-    /// What and when.
-    pub title: String,
-    /// What the values are, with their unit.
-    pub label: &'static str,
-    /// Values at the ends of the color bar.
-    pub range: (f64, f64),
-    /// Places of the particles [mm].
-    pub x: Vec<f64>,
-    /// Places of the particles [mm].
-    pub y: Vec<f64>,
-    /// Extent of the particles [mm].
-    pub size: Vec<f64>,
-    /// Values.
-    pub values: Vec<f64>,
+/// What a suite is.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// Name in commands and files; folder in `validation/`.
+    pub name: &'static str,
+    /// Title in reports.
+    pub title: &'static str,
+    /// What `n` counts.
+    pub resolution: &'static str,
+    /// What the figures are held against.
+    pub reference: ReferenceKind,
+    /// Text of `validation/<name>/gates.ron`.
+    pub gates: &'static str,
 }
 
-/// What a run cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Cost {
-    /// Particles, those outside of the domain included.
-    pub particles: usize,
-    /// Time steps.
-    pub steps: u64,
-    /// Million particle-steps per second.
-    pub million_particle_steps_per_second: f64,
-    /// Wall time [s].
-    pub seconds: f64,
+/// What the figures of a suite are held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReferenceKind {
+    /// An exact solution, or a formula.
+    Analytic,
+    /// Another program's solution, a converged mesh or a measurement: shares no code with the particle method.
+    External,
+    /// The program's own finest run: shows convergence, not truth.
+    OwnFinest,
 }
 
-/// Resolutions of a suite in a tier, coarse to fine.
-pub fn resolutions(suite: SuiteName, tier: Tier) -> &'static [u32] {
-    match (suite, tier) {
-        (SuiteName::Riemann | SuiteName::SoundWave, Tier::Quick) => &[100, 200, 400],
-        (SuiteName::Riemann | SuiteName::SoundWave, Tier::Full) => &[100, 200, 400, 800, 1600],
-        (SuiteName::Verny, Tier::Quick) => &[5, 10],
-        (SuiteName::Verny, Tier::Full) => &[5, 10, 20, 40],
-    }
-}
-
-/// The runs of a tier, all of `suites` with all of `schemes`.
-pub fn plan(suites: &[SuiteName], schemes: &[SchemeName], tier: Tier) -> Vec<Case> {
-    let mut cases = Vec::new();
-    for &suite in suites {
-        for &scheme in schemes {
-            cases.extend(resolutions(suite, tier).iter().map(|&n| Case { suite, scheme, n }));
-        }
-    }
-    cases
-}
-
-/// Work of a run, in particle-steps weighted by the price of the scheme: for the order of runs and the time left.
-pub fn work(case: Case) -> f64 {
-    let n = f64::from(case.n);
-    let (particles, steps) = match case.suite {
-        SuiteName::Riemann => (6.0 * n, riemann::DURATION * 6400.0 * n / riemann::LENGTH),
-        SuiteName::SoundWave => (6.0 * n, sound_wave::duration() * 5100.0 * n / sound_wave::LENGTH),
-        SuiteName::Verny => (std::f64::consts::PI * 9.0 * n * n, 140e-6 * 6400.0 * n / 0.02),
-    };
-    let price = match case.scheme {
-        SchemeName::Csph => 0.5,
-        SchemeName::TkcMuscl | SchemeName::TkcHancock => 1.0,
-    };
-    particles * steps * price / case.courant()
-}
-
-/// Runs one case.
-pub fn run(case: Case, progress: Progress<'_>) -> Result<Outcome, ValidateError> {
-    match case.suite {
-        SuiteName::Riemann => riemann::run(case, progress),
-        SuiteName::SoundWave => sound_wave::run(case, progress),
-        SuiteName::Verny => verny::run(case, progress),
-    }
-}
-
-/// A simulation that knows its case and its cost.
-struct Run {
-    case: Case,
-    simulation: Simulation<Dim2>,
-    started: Instant,
-    /// Kinetic and internal energy at the start [J/m].
-    energy: [f64; 2],
-}
-
-impl Run {
-    /// The solver with the settings of the scheme, but for what the case says of Courant number and limiter.
-    fn new(
-        case: Case,
-        domain: Domain<Dim2>,
-        material: Material,
-        particles: Particles<Dim2>,
-        smoothing: f64,
-    ) -> Result<Self, ValidateError> {
-        let mut settings = Settings::for_scheme(case.scheme.scheme());
-        settings.smoothing = smoothing;
-        settings.courant = case.courant();
-        settings.limiter = case.limiter().unwrap_or(settings.limiter);
-        if case.scheme != SchemeName::TkcHancock {
-            // The published schemes know no volume consistency.
-            settings.volume_consistency = None;
-        }
-        let simulation = Simulation::new(domain, vec![material], particles, settings)
-            .map_err(|source| ValidateError::Setup { case, source })?;
-        let energy = energies(&simulation);
-        Ok(Self { case, simulation, started: Instant::now(), energy })
-    }
-
-    /// One step, ending at `end` [s] at the latest.
-    fn step(&mut self, end: f64) -> Result<(), ValidateError> {
-        let (case, time) = (self.case, self.simulation.time());
-        match self.simulation.step_at_most(end - time) {
-            Ok(_) => Ok(()),
-            Err(source) => Err(ValidateError::Numerical { case, time, source }),
-        }
-    }
-
-    /// Steps to `end` [s].
-    fn advance(&mut self, end: f64, progress: Progress<'_>) -> Result<(), ValidateError> {
-        // A remainder of round-off size is no step.
-        while self.simulation.time() < end * (1.0 - 1e-12) {
-            self.step(end)?;
-            progress(self.simulation.time() / end);
-        }
-        Ok(())
-    }
-
-    /// Change of the total energy since the start, over the greater of the kinetic energies: e counts from the
-    /// reference state, so that the total may be zero.
-    fn energy_drift(&self) -> Measurement {
-        let [kinetic, internal] = energies(&self.simulation);
-        let change = (kinetic - self.energy[0]) + (internal - self.energy[1]);
-        Measurement::error_of(Metric::EnergyDrift, change / kinetic.max(self.energy[0]))
-    }
-
-    fn cost(&self) -> Cost {
-        let seconds = self.started.elapsed().as_secs_f64();
-        Cost {
-            particles: self.simulation.particles().len(),
-            steps: self.simulation.step_count(),
-            million_particle_steps_per_second: 1e-6 * self.simulation.particle_steps() as f64 / seconds,
-            seconds,
+impl ReferenceKind {
+    /// For readers.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Analytic => "exact",
+            Self::External => "independent solution or measurement",
+            Self::OwnFinest => "own finest run",
         }
     }
 }
 
-/// Kinetic and internal energy [J/m].
-fn energies(simulation: &Simulation<Dim2>) -> [f64; 2] {
-    let totals = simulation.totals();
-    [totals.kinetic_energy, totals.internal_energy]
+/// A picture of a suite.
+pub struct Picture {
+    /// Name of its files, without an extension; begins with the name of the suite.
+    pub name: String,
+    /// What it shows, in a sentence for the report.
+    pub caption: String,
+    /// What is drawn.
+    pub drawing: Drawing,
 }
 
-/// A named material of the library.
-pub(crate) fn material(name: &str) -> Result<Material, ValidateError> {
-    library::material(name).map_err(|error| ValidateError::Material(error.to_string()))
+/// What is drawn.
+pub enum Drawing {
+    /// Curves.
+    Plot(Figure),
+    /// A field over the particles.
+    Field(FieldImage),
 }
 
-/// A free particle of the first material on a square lattice, at rest and without stress.
-fn particle_at(id: usize, position: [f64; 2], size: f64, density: f64) -> Particle<Dim2> {
-    Particle::at_rest(id as u64, position.into(), density * size * size, size, density)
+/// A suite by its name.
+pub fn find(name: &str) -> Option<&'static dyn Suite> {
+    ALL.iter().copied().find(|suite| suite.about().name == name)
+}
+
+/// Names of all suites.
+pub fn names() -> Vec<&'static str> {
+    ALL.iter().map(|suite| suite.about().name).collect()
 }

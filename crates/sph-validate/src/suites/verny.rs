@@ -16,17 +16,24 @@ use std::sync::OnceLock;
 use sph_core::geometry::concentric_rings;
 use sph_core::{CoreError, Dim2, Domain, Particle, Particles};
 
-use super::{Field, Outcome, Progress, Run, material};
-use crate::case::Case;
+use sph_io::field_image::FieldImage;
+use sph_io::plot::{Axis, Figure, LegendPosition, Panel, Series};
+
+use super::{About, Drawing, Picture, ReferenceKind, Suite};
+use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
 use crate::metric::{Measurement, Metric};
+use crate::outcome::{Curve, Field, Outcome};
+use crate::plots;
 use crate::reference::lagrangian::{Ends, Mesh, Scheme, Solid, Symmetry, Viscosity, Zone};
 use crate::reference::verney::Shell;
+use crate::run::{Run, material};
+use crate::watch::Watch;
 
 /// Inner radius R0 [m].
-pub const INNER_RADIUS: f64 = 0.08;
+const INNER_RADIUS: f64 = 0.08;
 /// Outer radius R1 [m].
-pub const OUTER_RADIUS: f64 = 0.1;
+const OUTER_RADIUS: f64 = 0.1;
 /// Velocity U0 of the inner surface [m/s].
 const VELOCITY: f64 = 208.55;
 const SMOOTHING: f64 = 0.5;
@@ -37,6 +44,58 @@ const EARLIEST_STOP: f64 = 60e-6;
 const AFTER_STOP: f64 = 6e-6;
 /// A shell that still moves inwards now does not stop [s].
 const LATEST_STOP: f64 = 250e-6;
+
+/// Inner radius at the stop from the mean of r² over the whole shell.
+const STOP_RADIUS_BY_SQUARE: Metric = Metric::value("stop_radius_by_square", "mm");
+/// Inner radius at the stop from the innermost ring of particles.
+const STOP_RADIUS_BY_RING: Metric = Metric::value("stop_radius_by_ring", "mm");
+/// Time of the stop of the innermost ring.
+const STOP_TIME: Metric = Metric::value("stop_time", "us");
+
+/// The suite.
+pub struct Verny;
+
+impl Suite for Verny {
+    fn about(&self) -> About {
+        About {
+            name: "verny",
+            title: "Verney's cylindrical shell",
+            resolution: "rings of particles (D0 = 20 mm / n)",
+            reference: ReferenceKind::External,
+            gates: include_str!("../../../../validation/verny/gates.ron"),
+        }
+    }
+
+    fn cases(&self, tier: Tier) -> Vec<Case> {
+        let resolutions: &[u32] = match tier {
+            Tier::Quick => &[5, 10],
+            Tier::Full => &[5, 10, 20, 40],
+        };
+        Case::grid("verny", &SchemeName::ALL, resolutions)
+    }
+
+    fn work(&self, case: &Case) -> f64 {
+        let n = f64::from(case.n);
+        let steps = 140e-6 * 6400.0 * n / (OUTER_RADIUS - INNER_RADIUS) / case.scheme.courant();
+        9.0 * std::f64::consts::PI * n * n * steps * case.scheme.price()
+    }
+
+    fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
+        run(case, watch)
+    }
+
+    fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
+        let radius = Picture {
+            name: "verny".into(),
+            caption: "inner radius at the stop over the particle size, all schemes above, near the references below"
+                .into(),
+            drawing: Drawing::Plot(stop_radius_plot(outcomes)?),
+        };
+        let mut pictures = vec![radius];
+        pictures.extend(plots::fields("verny", outcomes, image));
+        Ok(pictures)
+    }
+}
 
 /// The least of a reading over time.
 #[derive(Clone, Copy, Debug)]
@@ -115,8 +174,8 @@ fn speed(r: f64) -> f64 {
     VELOCITY * INNER_RADIUS / r
 }
 
-/// Inner radius at the stop [mm] as the figure of the suite shows it: (rigid-plastic formula, mesh by r², mesh inner).
-pub fn references() -> Result<[f64; 3], ValidateError> {
+/// Inner radius at the stop [mm] as the figure of the suite shows it: rigid-plastic formula, mesh by r².
+fn references() -> Result<[f64; 2], ValidateError> {
     let material = material("aluminium-verney")?;
     let shell = Shell {
         inner_radius: INNER_RADIUS,
@@ -125,22 +184,24 @@ pub fn references() -> Result<[f64; 3], ValidateError> {
         yield_strength: material.strength.yield_strength(),
     };
     let formula = shell.stop_radius(VELOCITY).unwrap_or(f64::NAN);
-    let [all, inner] = Stop::reference().radii();
-    Ok([1e3 * formula, all, inner])
+    Ok([1e3 * formula, Stop::reference().radii()[0]])
 }
 
 /// Runs one resolution.
-pub fn run(case: Case, progress: Progress<'_>) -> Result<Outcome, ValidateError> {
+fn run(case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
     let material = material("aluminium-verney")?;
     let particles = particles(case.n, material.reference_density)
-        .map_err(|error| ValidateError::Packing { case, reason: error.to_string() })?;
+        .map_err(|error| ValidateError::Packing { case: case.to_string(), reason: error.to_string() })?;
     let reader = Reader::new(&particles);
-    let mut run = Run::new(case, Domain::open(), material, particles, SMOOTHING)?;
+    let mut settings = case.scheme.settings();
+    settings.smoothing = SMOOTHING;
+    let mut run = Run::new(case, watch, Domain::open(), material, particles, settings)?;
     let (mut stop, mut pictured) = (Stop::UNSEEN, 0.0);
     let mut fields = vec![start_field(&run)];
     while !stop.is_over(run.simulation.time()) {
         if run.simulation.time() >= LATEST_STOP {
-            return Err(ValidateError::NotStopped { case, limit: LATEST_STOP });
+            let reason = format!("the shell has not stopped after {:.1} us", 1e6 * LATEST_STOP);
+            return Err(ValidateError::NotReached { case: case.to_string(), reason });
         }
         run.step(LATEST_STOP)?;
         let time = run.simulation.time();
@@ -151,22 +212,19 @@ pub fn run(case: Case, progress: Progress<'_>) -> Result<Outcome, ValidateError>
             fields.truncate(1);
             fields.push(stop_field(&run));
         }
-        progress((time / 135e-6).min(1.0));
+        run.tell(time / 135e-6);
     }
-    let mut measurements = measurements(&stop).to_vec();
-    measurements.push(run.energy_drift());
     let curve = vec![(20.0 / f64::from(case.n), stop.radii()[0])];
-    Ok(Outcome { case, measurements, curve, fields, cost: run.cost() })
+    Ok(run.outcome(measurements(&stop), vec![Curve::new("stop", curve)], fields))
 }
 
-fn measurements(stop: &Stop) -> [Measurement; 3] {
+fn measurements(stop: &Stop) -> Vec<Measurement> {
     let exact = Stop::reference();
     let ([all, ring], [exact_all, exact_inner]) = (stop.radii(), exact.radii());
-    let (time, exact_time) = (1e6 * stop.ring.time, 1e6 * exact.ring.time);
-    [
-        Measurement { metric: Metric::StopRadiusBySquare, value: all, reference: exact_all },
-        Measurement { metric: Metric::StopRadiusByRing, value: ring, reference: exact_inner },
-        Measurement { metric: Metric::StopTime, value: time, reference: exact_time },
+    vec![
+        Measurement::new(STOP_RADIUS_BY_SQUARE, all, exact_all),
+        Measurement::new(STOP_RADIUS_BY_RING, ring, exact_inner),
+        Measurement::new(STOP_TIME, 1e6 * stop.ring.time, 1e6 * exact.ring.time),
     ]
 }
 
@@ -217,7 +275,7 @@ impl Reader {
         [all / mass, ring / self.innermost as f64]
     }
 
-    fn read(&self, run: &Run, stop: &mut Stop) {
+    fn read(&self, run: &Run<'_, Dim2>, stop: &mut Stop) {
         let [all, ring] = self.means(run.simulation.particles());
         let time = run.simulation.time();
         stop.all.see(INNER_RADIUS.powi(2) + all - self.start[0], time);
@@ -230,7 +288,7 @@ fn square_radius(particles: &Particles<Dim2>, i: usize) -> f64 {
 }
 
 /// The picture of the start: the radial speed inwards.
-fn start_field(run: &Run) -> Field {
+fn start_field(run: &Run<'_, Dim2>) -> Field {
     let particles = run.simulation.particles();
     let inwards = |i: usize| {
         let product: f64 = (0..2).map(|a| particles.position[a][i] * particles.velocity[a][i]).sum();
@@ -240,7 +298,7 @@ fn start_field(run: &Run) -> Field {
 }
 
 /// The picture of the stop: the von Mises stress.
-fn stop_field(run: &Run) -> Field {
+fn stop_field(run: &Run<'_, Dim2>) -> Field {
     let particles = run.simulation.particles();
     let mises = |i: usize| {
         let [xx, yy, zz, xy]: [f64; 4] = std::array::from_fn(|k| particles.deviator[k][i]);
@@ -250,32 +308,70 @@ fn stop_field(run: &Run) -> Field {
 }
 
 fn field(
-    run: &Run,
-    moment: &'static str,
-    (label, range): (&'static str, (f64, f64)),
+    run: &Run<'_, Dim2>,
+    name: &str,
+    (label, range): (&str, (f64, f64)),
     value: impl Fn(usize) -> f64,
 ) -> Field {
     let particles = run.simulation.particles();
     let millimeters = |column: &[f64]| column.iter().map(|x| 1e3 * x).collect();
     let size = 20.0 / f64::from(run.case.n);
     let extent = |i: usize| 1e3 * (particles.mass[i] / particles.density[i]).sqrt();
+    let scheme = run.case.scheme.title();
     Field {
-        moment,
-        title: match moment {
+        name: name.into(),
+        title: match name {
             "start" => format!("start, D_0 = {size} mm"),
-            _ => format!(
-                "{}, D_0 = {size} mm, t = {:.1} µs",
-                run.case.scheme.title(),
-                1e6 * run.simulation.time()
-            ),
+            _ => format!("{scheme}, D_0 = {size} mm, t = {:.1} µs", 1e6 * run.simulation.time()),
         },
-        label,
+        label: label.into(),
         range,
         x: millimeters(&particles.position[0]),
         y: millimeters(&particles.position[1]),
         size: (0..particles.len()).map(extent).collect(),
         values: (0..particles.len()).map(value).collect(),
     }
+}
+
+/// One quadrant of the shell.
+fn image(field: &Field) -> FieldImage {
+    let side = (0.0, 1.04e3 * OUTER_RADIUS);
+    plots::field_image(field, side, side)
+}
+
+/// The inner radius at the stop over the particle size: all schemes above, near the references below.
+fn stop_radius_plot(outcomes: &[&Outcome]) -> Result<Figure, ValidateError> {
+    let [formula, by_square] = references()?;
+    let size = |outcome: &Outcome| 20.0 / f64::from(outcome.case.n);
+    let radius =
+        |outcome: &Outcome| (size(outcome), outcome.curve("stop").first().map_or(f64::NAN, |point| point.1));
+    let sizes = outcomes.iter().map(|outcome| size(outcome));
+    let (least, greatest) = sizes.fold((f64::INFINITY, 0.0f64), |(a, b), d| (a.min(d), b.max(d)));
+    // Flat series rather than annotations, so that they lie within the range of the plot.
+    let flat = |style: fn(&str, &[f64], &[f64]) -> Series, label: &str, radius: f64| {
+        let label = format!("{label}: {radius:.3} mm");
+        style(&label, &[0.9 * least, 1.1 * greatest], &[radius, radius]).with_color(plots::BLACK)
+    };
+    let panel = |y: Axis| {
+        let mut panel = Panel::new(y);
+        for (label, points) in plots::by_kin(outcomes, radius) {
+            panel = panel.with(plots::line(Series::line_with_points, &label, &points));
+        }
+        panel.with(flat(Series::dashed, "1-D mesh", by_square)).with(flat(
+            Series::dotted,
+            "rigid-plastic formula",
+            formula,
+        ))
+    };
+    let near = Axis::new("r'_0 [mm]").with_range(by_square - 0.08, formula + 0.05);
+    let mut figure = Figure::stacked(
+        "Verney's cylindrical shell: inner radius at the stop (mean of r²)",
+        Axis::log("particle size D_0 [mm]").with_ticks(&[0.5, 1.0, 2.0, 4.0]),
+    )
+    .with_panel(panel(Axis::new("r'_0 [mm]")))
+    .with_panel(panel(near).with_legend(LegendPosition::Hidden));
+    figure.panel_height = 360.0;
+    Ok(figure)
 }
 
 #[cfg(test)]
@@ -316,8 +412,9 @@ mod tests {
 
     #[test]
     fn references_are_the_known_ones() {
-        let [formula, by_square, inner] = references().expect("in the library");
+        let [formula, by_square] = references().expect("in the library");
         assert!((formula - 66.716).abs() < 5e-4, "{formula}");
+        let inner = Stop::reference().radii()[1];
         assert!((by_square - 66.514).abs() < 1e-3 && (inner - 66.536).abs() < 1e-3, "{by_square} {inner}");
     }
 }

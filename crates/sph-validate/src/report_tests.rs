@@ -1,0 +1,120 @@
+use super::*;
+use crate::metric::Measurement;
+use crate::runner::Job;
+use crate::suites::Suite;
+use crate::watch::Watch;
+
+const VELOCITY_L1: Metric = Metric::norm("velocity_l1", "m/s");
+const PERIOD: Metric = Metric::converging_value("period", "us");
+
+/// A suite that only has a table of gates.
+struct Paper;
+
+impl Suite for Paper {
+    fn about(&self) -> About {
+        About {
+            name: "paper",
+            title: "Paper",
+            resolution: "particles",
+            reference: ReferenceKind::Analytic,
+            gates: r#"(
+                source: "a test",
+                figures: [(scheme: TkcHancock, metric: "velocity_l1",
+                           printed: {100: "0.0163", 200: "0.00348", 400: "7.9e-4"})],
+                limits: [(metric: "energy_drift", error_at_most: 1e-10)],
+                orders: [(metric: "velocity_l1", at_least: 1.85)],
+            )"#,
+        }
+    }
+
+    fn cases(&self, _: Tier) -> Vec<Case> {
+        Vec::new()
+    }
+
+    fn work(&self, _: &Case) -> f64 {
+        1.0
+    }
+
+    fn run(&self, case: &Case, _: Watch<'_>) -> Result<Outcome, ValidateError> {
+        Err(ValidateError::NotReached { case: case.to_string(), reason: "never run".into() })
+    }
+}
+
+fn ended(n: u32, measurement: Measurement) -> Ended<'static> {
+    let case = Case::new("paper", SchemeName::TkcHancock, n);
+    let outcome = Outcome {
+        case: case.clone(),
+        measurements: vec![measurement],
+        conservation: Conservation { energy: 1e-15, ..Conservation::default() },
+        curves: Vec::new(),
+        fields: Vec::new(),
+        cost: Cost::default(),
+    };
+    Ended { job: Job { suite: &Paper, case }, result: Ok(outcome) }
+}
+
+fn report(errors: [f64; 3]) -> Report {
+    let of = |(n, error)| ended(n, Measurement::error_of(VELOCITY_L1, error));
+    let ended: Vec<Ended<'_>> = [100, 200, 400].into_iter().zip(errors).map(of).collect();
+    Report::new("test".into(), Tier::Quick, &ended).expect("good gates")
+}
+
+#[test]
+fn good_figures_pass_every_gate() {
+    let report = report([0.0065, 0.0008, 0.0001]);
+    let table = report.table(&report.suites[0]);
+    assert_eq!((report.n_gates(), report.failures().count()), (7, 0), "{table}");
+}
+
+#[test]
+fn one_bad_figure_fails_its_own_gate_and_that_of_the_order() {
+    let report = report([0.0065, 0.0008, 0.0018]);
+    let failed: Vec<_> = report.failures().map(|row| (row.n, row.metric.as_str())).collect();
+    assert_eq!(failed, [(Some(400), "velocity_l1"), (None, "velocity_l1_order")]);
+}
+
+#[test]
+fn not_a_number_fails() {
+    assert!(report([f64::NAN, 0.0018, 0.0004]).failures().count() >= 1);
+}
+
+#[test]
+fn finest_run_is_the_reference_where_no_answer_is_known() {
+    let of = |(n, value)| ended(n, Measurement::against_finest(PERIOD, value));
+    let runs = [(10, 5.4), (20, 5.1), (40, 5.0)].map(of);
+    let outcomes: Vec<&Outcome> = runs.iter().filter_map(|run| run.result.as_ref().ok()).collect();
+    let mut rows = Vec::new();
+    push_suite(&mut rows, &GateFile::default(), &Paper.about(), &outcomes).expect("no gates");
+    let periods: Vec<&Row> = rows.iter().filter(|row| row.metric == "period").collect();
+    assert_eq!(periods.iter().map(|row| row.reference).collect::<Vec<_>>(), [Some(5.0), Some(5.0), None]);
+    assert!(periods[1].order.is_some_and(|order| (order - 2.0).abs() < 1e-9), "{:?}", periods[1]);
+    assert_eq!((periods[2].error, periods[2].order), (None, None));
+}
+
+#[test]
+fn gate_of_a_figure_that_no_run_measures_is_an_error() {
+    let runs = [ended(10, Measurement::error_of(PERIOD, 1.0))];
+    let error = Report::new("test".into(), Tier::Quick, &runs).expect_err("no velocity_l1").to_string();
+    assert!(
+        error.contains("`velocity_l1` is no figure of paper tkc-hancock n = 10; it has period, "),
+        "{error}"
+    );
+}
+
+#[test]
+fn json_has_the_agreed_fields() {
+    let json = serde_json::to_value(report([0.0065, 0.0008, 0.0001])).expect("JSON");
+    let row = &json["rows"][1];
+    assert_eq!(
+        (&row["suite"], &row["scheme"], &row["n"]),
+        (&"paper".into(), &"tkc-hancock".into(), &200.into())
+    );
+    assert_eq!(
+        (&row["metric"], &row["unit"], &row["passed"]),
+        (&"velocity_l1".into(), &"m/s".into(), &true.into())
+    );
+    assert!(row["gate"]["error_at_most"].as_f64().is_some_and(|limit| limit > 0.0008 && limit <= 0.003485));
+    assert!(row["order"].as_f64().is_some_and(|order| (order - 3.022).abs() < 0.01));
+    assert_eq!(row["reference"], 0.0);
+    assert_eq!(json["runs"][0]["conservation"]["energy"], 1e-15);
+}

@@ -70,6 +70,18 @@ pub enum ValidateError {
         /// What is wrong, with line and column.
         reason: String,
     },
+    /// The folder holds finished runs, and nothing says what shall happen to them.
+    #[error(
+        "{}: there are {count} finished runs of an earlier validation; hint: --resume takes over those that this program \
+         would give again, --replace throws them away, --out names another folder",
+        folder.display()
+    )]
+    Earlier {
+        /// The folder.
+        folder: PathBuf,
+        /// How many runs.
+        count: usize,
+    },
     /// A result could not be written.
     #[error("{}: cannot be written: {reason}", path.display())]
     Output {

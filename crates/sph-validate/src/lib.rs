@@ -21,6 +21,7 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod case;
+pub mod cli;
 pub mod conservation;
 pub mod disorder;
 pub mod error;
@@ -32,6 +33,7 @@ pub mod reference;
 pub mod report;
 pub mod run;
 pub mod runner;
+pub mod store;
 pub mod suites;
 pub mod summary;
 pub mod watch;

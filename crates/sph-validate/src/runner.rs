@@ -9,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
 use crate::outcome::Outcome;
+use crate::store::Store;
 use crate::suites::Suite;
 use crate::watch::Watch;
 
@@ -61,24 +62,36 @@ pub struct Status {
 /// Called from the threads of the runs: with the status, and with the run that has just ended.
 pub type Listener<'a> = &'a (dyn Fn(Status, Option<(&Case, &Result<Outcome, ValidateError>)>) + Sync);
 
-/// Runs `jobs` on `threads` threads; results in the order of `jobs`. Once `interrupt` is set, runs under way stop.
-pub fn run_all<'s>(
-    jobs: Vec<Job<'s>>,
-    threads: usize,
-    interrupt: &AtomicBool,
-    listener: Listener<'_>,
-) -> Vec<Ended<'s>> {
+/// How runs are made.
+#[derive(Clone, Copy)]
+pub struct Settings<'a> {
+    /// Runs side by side.
+    pub threads: usize,
+    /// Finished runs on disk: taken over from there, and kept there.
+    pub store: Option<&'a Store>,
+    /// Once it is set, runs under way stop.
+    pub interrupt: &'a AtomicBool,
+}
+
+/// Runs `jobs`; results in their order.
+pub fn run_all<'s>(jobs: Vec<Job<'s>>, settings: Settings<'_>, listener: Listener<'_>) -> Vec<Ended<'s>> {
     let meter = Meter::new(&jobs);
-    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    let mut finished: Vec<(usize, Result<Outcome, ValidateError>)> = Vec::new();
+    for (k, outcome) in kept(&jobs, settings.store) {
+        meter.finish(k);
+        finished.push((k, Ok(outcome)));
+    }
+    let is_open = |k: &usize| finished.iter().all(|(done, _)| done != k);
+    let mut order: Vec<usize> = (0..jobs.len()).filter(is_open).collect();
     order.sort_by(|&a, &b| meter.work[b].total_cmp(&meter.work[a]));
     let queue = Mutex::new(VecDeque::from(order));
-    let finished = Mutex::new(Vec::new());
+    let finished = Mutex::new(finished);
     std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, jobs.len().max(1)) {
+        for _ in 0..settings.threads.clamp(1, jobs.len().max(1)) {
             scope.spawn(|| {
                 let next = || lock(&queue).pop_front();
                 while let Some(k) = next() {
-                    let result = run_one(&jobs[k], interrupt, &|share| listener(meter.note(k, share), None));
+                    let result = run_one(&jobs[k], settings, &|share| listener(meter.note(k, share), None));
                     listener(meter.finish(k), Some((&jobs[k].case, &result)));
                     lock(&finished).push((k, result));
                 }
@@ -91,14 +104,29 @@ pub fn run_all<'s>(
     jobs.into_iter().zip(results).map(|(job, result)| Ended { job, result }).collect()
 }
 
-/// One run, with a pool of one thread for all of its parallel loops.
+/// Jobs, by their places, whose outcomes are on disk.
+fn kept<'j>(jobs: &'j [Job<'_>], store: Option<&'j Store>) -> impl Iterator<Item = (usize, Outcome)> + 'j {
+    let load = move |job: &Job<'_>| store?.load(&job.case, &job.suite.parameters());
+    jobs.iter().enumerate().filter_map(move |(k, job)| Some((k, load(job)?)))
+}
+
+/// One run; kept on disk when it has ended.
 fn run_one(
     job: &Job<'_>,
-    interrupt: &AtomicBool,
+    settings: Settings<'_>,
     tell: &(dyn Fn(f64) + Sync),
 ) -> Result<Outcome, ValidateError> {
-    let watch = Watch::new(tell, interrupt);
+    let watch = Watch::new(tell, settings.interrupt);
     watch.check()?;
+    let outcome = run_alone(job, watch)?;
+    if let Some(store) = settings.store {
+        store.save(&outcome, &job.suite.parameters())?;
+    }
+    Ok(outcome)
+}
+
+/// One run, with a pool of one thread for all of its parallel loops.
+fn run_alone(job: &Job<'_>, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
     match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
         Ok(pool) => pool.install(|| job.suite.run(&job.case, watch)),
         // Without a pool of its own a case still runs, in the shared one.

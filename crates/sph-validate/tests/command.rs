@@ -40,6 +40,28 @@ fn folder_that_cannot_be_made_is_bad_input() {
 }
 
 #[test]
+fn finished_runs_are_taken_over_and_never_lost_by_accident() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let suite = ["--suite", "riemann", "--scheme", "tkc-hancock"];
+    let run = |more: &[&str]| validate(&[&suite[..], more].concat(), folder.path());
+    assert_eq!(run(&[]).status.code(), Some(0));
+    let rows = || {
+        let text = std::fs::read_to_string(folder.path().join("results.json")).expect("results.json");
+        let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        (json["rows"].clone(), json["runs"].clone())
+    };
+    let first = rows();
+    let refused = run(&[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(error_text(&refused).contains("3 finished runs"), "{}", error_text(&refused));
+    let resumed = run(&["--resume"]);
+    assert_eq!(resumed.status.code(), Some(0));
+    assert!(!error_text(&resumed).contains("n = 400:"), "computed again: {}", error_text(&resumed));
+    assert_eq!(rows(), first, "the same figures, and the times of the runs that were kept");
+    assert!(error_text(&run(&["--replace"])).contains("n = 400:"));
+}
+
+#[test]
 fn one_suite_with_one_scheme_writes_table_json_summary_and_plots() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = validate(&["--suite", "riemann", "--scheme", "tkc-hancock"], folder.path());

@@ -6,12 +6,13 @@ use sph_validate::case::{Case, SchemeName, Tier};
 use sph_validate::conservation::Conservation;
 use sph_validate::gate::GateFile;
 use sph_validate::report::Report;
-use sph_validate::runner::{Ended, Job, run_all};
+use sph_validate::runner::{Ended, Job, Settings, run_all};
 use sph_validate::suites;
 
 fn run(cases: &[Case], threads: usize) -> Vec<Ended<'static>> {
     let job = |case: &Case| Job { suite: suites::find(&case.suite).expect("a suite"), case: case.clone() };
-    run_all(cases.iter().map(job).collect(), threads, &AtomicBool::new(false), &|_, _| ())
+    let settings = Settings { threads, store: None, interrupt: &AtomicBool::new(false) };
+    run_all(cases.iter().map(job).collect(), settings, &|_, _| ())
 }
 
 /// Runs `cases`; every gate of these runs must pass.

@@ -62,6 +62,11 @@ pub trait Suite: Sync {
     /// One run.
     fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError>;
 
+    /// What its answers depend on besides the code; a kept run of other parameters is computed again.
+    fn parameters(&self) -> String {
+        String::new()
+    }
+
     /// The pictures of its outcomes, which are in the order of [`Self::cases`] and at least one.
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         Ok(plots::convergences(&self.about(), outcomes))

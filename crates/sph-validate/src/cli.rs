@@ -1,0 +1,176 @@
+//! The command line of `sph-validate`: what can be typed, and which exit code follows.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use sph_io::progress::{Mode, Progress};
+
+use crate::case::{Case, SchemeName, Tier};
+use crate::error::ValidateError;
+use crate::gate::Significant;
+use crate::outcome::Outcome;
+use crate::plots::write_pictures;
+use crate::report::Report;
+use crate::runner::{Ended, Settings, Status, plan, run_all};
+use crate::store::{Earlier, Store};
+use crate::suites::{self, Suite};
+use crate::summary::summary;
+
+/// All gates passed.
+pub const PASSED: u8 = 0;
+/// A gate was missed.
+pub const GATE_MISSED: u8 = 4;
+/// Stopped by Ctrl-C; finished runs are kept.
+pub const INTERRUPTED: u8 = 130;
+
+const EXAMPLES: &str = "Examples:
+  cargo xtask validate                                 quick tier, all suites, all schemes
+  cargo xtask validate --tier full --resume            every resolution; goes on where it was interrupted
+  cargo xtask validate --suite verny --scheme tkc-hancock --out results/shell
+
+Each run is kept in DIR/runs as soon as it has ended. After Ctrl-C, a crash or a power cut --resume takes over those that
+this program would give again, to the last bit, and computes the others; runs of other code are computed again.
+Exit codes: 0 all gates passed, 2 bad input, 3 a run failed, 4 a gate was missed, 130 interrupted";
+
+/// Runs problems with known answers, measures the errors and holds them against their gates.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask validate", bin_name = "cargo xtask validate", version, after_help = EXAMPLES)]
+pub struct Arguments {
+    /// How much is run
+    #[arg(long, value_enum, default_value_t)]
+    tier: Tier,
+    /// Only this problem; may be given more than once
+    #[arg(long, value_parser = PossibleValuesParser::new(suites::names()))]
+    suite: Vec<String>,
+    /// Only this scheme; may be given more than once
+    #[arg(long, value_enum)]
+    scheme: Vec<SchemeName>,
+    /// Folder of the report, the plots and the finished runs
+    #[arg(long, value_name = "DIR", default_value = "results/validation")]
+    out: PathBuf,
+    /// Runs side by side; default: as many as there are cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Take over the finished runs of an earlier validation in the folder, where the code is the same
+    #[arg(long, conflicts_with = "replace")]
+    resume: bool,
+    /// Throw the finished runs of an earlier validation in the folder away
+    #[arg(long)]
+    replace: bool,
+}
+
+impl Arguments {
+    fn earlier(&self) -> Earlier {
+        match (self.resume, self.replace) {
+            (true, _) => Earlier::Resume,
+            (_, true) => Earlier::Replace,
+            _ => Earlier::Refuse,
+        }
+    }
+
+    /// The command that makes the same report.
+    fn command(&self) -> String {
+        let mut words = vec![format!("cargo xtask validate --tier {}", self.tier.as_str())];
+        words.extend(self.suite.iter().map(|suite| format!("--suite {suite}")));
+        words.extend(self.scheme.iter().map(|scheme| format!("--scheme {scheme}")));
+        words.join(" ")
+    }
+}
+
+/// Runs the command; returns the exit code.
+pub fn execute(arguments: &Arguments) -> Result<u8, ValidateError> {
+    let is_asked =
+        |name: &str| arguments.suite.is_empty() || arguments.suite.iter().any(|asked| asked == name);
+    let suites: Vec<&dyn Suite> =
+        suites::ALL.iter().copied().filter(|suite| is_asked(suite.about().name)).collect();
+    validate(arguments, &suites)
+}
+
+fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, ValidateError> {
+    let store = Store::open(&arguments.out, arguments.earlier())?;
+    let schemes = if arguments.scheme.is_empty() { &SchemeName::ALL[..] } else { &arguments.scheme };
+    let jobs = plan(suites, schemes, arguments.tier);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.map_or(cores, usize::from);
+    let label = format!("validation, {} tier, {threads} threads", arguments.tier.as_str());
+    let progress = Mutex::new(Progress::new(1.0, label, Mode::Auto));
+    let interrupt = stop_on_interrupt();
+    let settings = Settings { threads, store: Some(&store), interrupt: &interrupt };
+    let ended = run_all(jobs, settings, &|status, ended| {
+        show(&mut progress.lock().unwrap_or_else(PoisonError::into_inner), status, ended);
+    });
+    let progress = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let finished = ended.iter().filter(|ended| ended.result.is_ok()).count();
+    progress.finish(&format!("{finished} of {} runs", ended.len()));
+    if interrupt.load(Ordering::Relaxed) {
+        let folder = arguments.out.display();
+        eprintln!(
+            "stopped; {finished} finished runs are kept. Go on with: {} --out {folder} --resume",
+            arguments.command()
+        );
+        return Ok(INTERRUPTED);
+    }
+    let report = Report::new(arguments.command(), arguments.tier, &ended)?;
+    write_files(&report, &ended, &arguments.out)?;
+    print_tables(&report);
+    let failed = ended.iter().filter_map(|ended| ended.result.as_ref().err());
+    let worst = failed.inspect(|error| eprintln!("error: {error}")).map(ValidateError::exit_code).max();
+    let gate_missed = report.failures().next().is_some();
+    Ok(worst.unwrap_or(if gate_missed { GATE_MISSED } else { PASSED }))
+}
+
+/// The first Ctrl-C asks the runs to stop; the second ends the process at once. Where no handler can be set, Ctrl-C ends
+/// the process, which loses no more than the runs under way.
+fn stop_on_interrupt() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&flag);
+    let _ = ctrlc::set_handler(move || {
+        if seen.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        eprintln!("interrupted: finished runs are kept; again to stop at once");
+    });
+    flag
+}
+
+fn write_files(report: &Report, ended: &[Ended<'_>], folder: &Path) -> Result<(), ValidateError> {
+    report.write_json(&folder.join("results.json"))?;
+    let pictures = write_pictures(ended, folder)?;
+    let path = folder.join("summary.md");
+    sph_io::write_atomic(&path, summary(report, &pictures).as_bytes())
+        .map_err(|error| ValidateError::Output { path, reason: error.to_string() })
+}
+
+fn print_tables(report: &Report) {
+    for suite in &report.suites {
+        println!("{}", report.table(suite));
+    }
+    let missed: Vec<_> = report.failures().collect();
+    println!("{} of {} gates passed", report.n_gates() - missed.len(), report.n_gates());
+    for row in missed {
+        let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
+        let gate = row.gate.map_or(String::new(), |gate| gate.to_string());
+        let variant = if row.variant.is_empty() { String::new() } else { format!("{} ", row.variant) };
+        println!(
+            "missed: {} {variant}{} {n}: {} = {} {}, {gate}",
+            row.suite,
+            row.scheme,
+            row.metric,
+            Significant(row.value),
+            row.unit
+        );
+    }
+}
+
+/// Shows where the runs stand; a run that has ended is noted.
+fn show(progress: &mut Progress, status: Status, ended: Option<(&Case, &Result<Outcome, ValidateError>)>) {
+    match ended {
+        Some((case, Ok(outcome))) => progress.note(&format!("{case}: {:.1} s", outcome.cost.seconds)),
+        Some((_, Err(ValidateError::Interrupted))) | None => {}
+        Some((case, Err(error))) => progress.note(&format!("{case}: FAILED, {error}")),
+    }
+    progress.update(status.share, &format!("{} of {} runs", status.done, status.total));
+}

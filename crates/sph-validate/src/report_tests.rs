@@ -1,3 +1,5 @@
+//! Tests of the report: verdicts, orders, references of the finest run, fields of the JSON.
+
 use super::*;
 use crate::metric::Measurement;
 use crate::runner::Job;

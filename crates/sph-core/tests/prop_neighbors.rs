@@ -5,7 +5,8 @@ mod common;
 use common::{box_of, random};
 use proptest::prelude::*;
 use rand::RngExt;
-use sph_core::neighbors::{NeighborLists, Reach, brute_force, kd_tree};
+use sph_core::lanes::LANES;
+use sph_core::neighbors::{NeighborLists, Reach, TILE, brute_force, kd_tree};
 use sph_core::{Components, Dim2, Dim3, Dimension, Domain, Vector};
 
 /// Random points in a box with random periodic axes, and sizes over a wide range.
@@ -43,7 +44,7 @@ impl<D: Dimension> Scene<D> {
 /// Pairs of the lists by owner, sorted; each image of a neighbor counts.
 fn listed_pairs<D: Dimension>(lists: &NeighborLists<D>) -> Vec<(u32, u32)> {
     let of = |i: usize| lists.neighbors(i).map(move |j| (i as u32, lists.owner(j as usize) as u32));
-    let mut pairs: Vec<(u32, u32)> = (0..lists.n_particles).flat_map(of).collect();
+    let mut pairs: Vec<(u32, u32)> = (0..lists.n_particles()).flat_map(of).collect();
     pairs.sort_unstable();
     pairs
 }
@@ -73,6 +74,40 @@ fn image_pairs<D: Dimension>(scene: &Scene<D>, cut: impl Fn(f64, f64) -> f64) ->
     pairs
 }
 
+/// Pairs of the parts that list each pair once, by particles, the lesser one first; checks the places in the buffers too.
+fn pairs_listed_once<D: Dimension>(lists: &NeighborLists<D>) -> Vec<(u32, u32)> {
+    let mut pairs = Vec::new();
+    for (t, tile) in lists.tiles().iter().enumerate() {
+        for block in 0..tile.n_blocks() {
+            let (slots, targets) = tile.pairs(block);
+            for (slot, target) in slots.iter().zip(targets) {
+                for (l, (&j, &place)) in slot.iter().zip(target).enumerate() {
+                    let i = t * TILE + block * LANES + l;
+                    let owner = lists.owner(j as usize);
+                    let there = match (place as usize).checked_sub(tile.n_own()) {
+                        Some(foreign) => tile.foreign()[foreign] as usize,
+                        None => t * TILE + place as usize,
+                    };
+                    assert_eq!(there, owner);
+                    if j as usize != i {
+                        pairs.push((i.min(owner) as u32, i.max(owner) as u32));
+                    }
+                }
+            }
+        }
+        for incoming in tile.incoming() {
+            let source = lists.tiles()[incoming.tile as usize].foreign();
+            let of_tile = &source[incoming.first as usize..incoming.end as usize];
+            assert!(of_tile.iter().all(|&o| o as usize / TILE == t) && !of_tile.is_empty());
+        }
+    }
+    let incoming: usize =
+        lists.tiles().iter().flat_map(|t| t.incoming()).map(|i| (i.end - i.first) as usize).sum();
+    assert_eq!(incoming, lists.tiles().iter().map(|t| t.foreign().len()).sum::<usize>());
+    pairs.sort_unstable();
+    pairs
+}
+
 fn searches_agree<D: Dimension>(scene: &Scene<D>, factor: f64, skin: f64) -> Result<(), TestCaseError> {
     let cut = |a: f64, b: f64| factor * (a + b) + skin;
     let plain = brute_force::pairs(&scene.position, &scene.size, &scene.domain, cut);
@@ -82,6 +117,11 @@ fn searches_agree<D: Dimension>(scene: &Scene<D>, factor: f64, skin: f64) -> Res
         NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, Reach { factor, skin });
     let mut listed = listed_pairs(&lists);
     prop_assert_eq!(&listed, &image_pairs(scene, cut));
+    let mut twice: Vec<(u32, u32)> = pairs_listed_once(&lists).iter().flat_map(|&p| [p, p]).collect();
+    let mut unordered: Vec<(u32, u32)> = listed.iter().map(|&(i, j)| (i.min(j), i.max(j))).collect();
+    unordered.sort_unstable();
+    twice.sort_unstable();
+    prop_assert_eq!(&twice, &unordered);
     listed.dedup();
     listed.retain(|&(i, j)| i != j);
     prop_assert_eq!(&listed, &plain);
@@ -133,6 +173,12 @@ proptest! {
         seed: u64, count in 1_usize..30, periodic in 1_u8..4, shortest in 0.15..0.4
     ) {
         searches_agree(&Scene::<Dim2>::new(count, periodic, shortest, seed), 1.5, 0.01)?;
+    }
+
+    /// Enough particles for many tiles, whose sums go to each other.
+    #[test]
+    fn searches_agree_over_many_tiles(seed: u64, count in 300_usize..700, periodic in 0_u8..4) {
+        searches_agree(&Scene::<Dim2>::new(count, periodic, 3.0, seed), 0.7, 0.02)?;
     }
 
     #[test]

@@ -37,10 +37,14 @@ pub trait SolidDimension: Dimension {
     const FACE_LINES: usize;
     /// A face record in registers.
     type FaceRecord<T: Value>: Components<T> + Value;
+    /// Cache lines of a record that pairs add to.
+    const SUM_LINES: usize;
     /// A record of the first pass in registers.
     type StateRecord<T: Value>: Components<T> + Value;
     /// A record of the second pass in registers.
     type SidesRecord<T: Value>: Components<T> + Value;
+    /// A record that pairs add to, in registers.
+    type SumsRecord<T: Value>: Components<T> + Value;
     /// A symmetric matrix.
     type Symmetric<T: Value>: Components<T> + Value;
     /// The dual of an antisymmetric matrix.
@@ -127,8 +131,10 @@ impl SolidDimension for Dim2 {
     const SIDES_LINES: usize = 3;
     const FACE_LINES: usize = 1;
     type FaceRecord<T: Value> = [T; 8];
+    const SUM_LINES: usize = 1;
     type StateRecord<T: Value> = [T; 8];
     type SidesRecord<T: Value> = [T; 24];
+    type SumsRecord<T: Value> = [T; 8];
     type Symmetric<T: Value> = [T; 3];
     type Spin<T: Value> = [T; 1];
     type Fields<T: Value> = [T; 5];
@@ -171,8 +177,10 @@ impl SolidDimension for Dim3 {
     const SIDES_LINES: usize = 7;
     const FACE_LINES: usize = 2;
     type FaceRecord<T: Value> = [T; 16];
+    const SUM_LINES: usize = 2;
     type StateRecord<T: Value> = [T; 16];
     type SidesRecord<T: Value> = [T; 56];
+    type SumsRecord<T: Value> = [T; 16];
     type Symmetric<T: Value> = [T; 6];
     type Spin<T: Value> = [T; 3];
     type Fields<T: Value> = [T; 9];

@@ -28,6 +28,7 @@
 //!
 //! Source: Rublev & Murzov, arXiv 2410.14646; Parshikov & Medin, J. Comput. Phys. 180 (2002) 358.
 
+mod check;
 pub mod contact;
 pub mod dimension;
 pub mod error;
@@ -40,6 +41,7 @@ pub mod restart;
 pub mod scheme;
 pub mod simulation;
 pub mod stage_times;
+mod stages;
 pub mod surface;
 pub mod time_step;
 pub mod update;

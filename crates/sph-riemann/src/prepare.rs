@@ -45,7 +45,7 @@ pub fn prepare<D: SolidDimension>(
 /// Lanes behind the last particle: no volume, nothing that could trap.
 fn fill(record: &mut [Line], rows: &mut [Line], lane: usize) {
     record.iter_mut().for_each(|line| line.0 = [0.0; LANES]);
-    for row in 0..Row::FORCE {
+    for row in 0..Row::LEAST_EIGENVALUE {
         rows[row].0[lane] = 0.0;
     }
     rows[Row::LONGITUDINAL].0[lane] = 1.0;

@@ -1,9 +1,11 @@
 //! Records: what pair loops read of a neighbour, packed into whole cache lines.
 //!
-//! The first pass (gradients) reads [`State`] records, the second (contact) [`Sides`] records. Numbers follow each other
-//! in a record in the order of the offsets below; the position comes first, where the halo expects it.
+//! The first pass (gradients) reads [`State`] records, the second (contact) [`Sides`] records, time-centring [`Centered`]
+//! records, which take the place of the first. Numbers follow each other in a record in the order of the offsets below;
+//! the position comes first, where the halo expects it. Pairs add up to [`Sums`] records.
 
 use sph_core::dimension::Dimension;
+use sph_core::lanes::LANES;
 
 use crate::dimension::SolidDimension;
 
@@ -28,7 +30,7 @@ impl State {
 pub struct Sides;
 
 impl Sides {
-    /// V = m/ρ [m^d].
+    /// V = m/ρ [m^d]; with a minus sign where the half step is to be centred on the true acceleration.
     #[inline(always)]
     pub const fn volume<D: Dimension>() -> usize {
         D::COUNT
@@ -65,6 +67,48 @@ impl Sides {
     }
 }
 
+/// Offsets in the record of time-centring, one line: position, volume, then δ.
+pub struct Centered;
+
+impl Centered {
+    /// V = m/ρ [m^d].
+    #[inline(always)]
+    pub const fn volume<D: Dimension>() -> usize {
+        D::COUNT
+    }
+    /// First component of δ [m/s], by which the half step of the velocity is corrected.
+    #[inline(always)]
+    pub const fn delta<D: Dimension>() -> usize {
+        D::COUNT + 1
+    }
+}
+
+/// Offsets in the record that pairs add to: force, power, raw velocity gradient; the last number of the record is the
+/// largest squared speed relative to a neighbour [m²/s²], not a sum.
+pub struct Sums;
+
+impl Sums {
+    /// First component of the force [N], per metre of depth in the plane.
+    pub const FORCE: usize = 0;
+
+    /// Power of the contact forces [W], per metre of depth in the plane.
+    #[inline(always)]
+    pub const fn power<D: Dimension>() -> usize {
+        D::COUNT
+    }
+    /// First component of the raw velocity gradient times the particle's volume, V R [m^d/s]: derivative a of component b
+    /// at `+ a * COUNT + b`.
+    #[inline(always)]
+    pub const fn gradient<D: Dimension>() -> usize {
+        D::COUNT + 1
+    }
+    /// Largest squared speed relative to a neighbour [m²/s²].
+    #[inline(always)]
+    pub const fn relative_speed_squared<D: SolidDimension>() -> usize {
+        D::SUM_LINES * LANES - 1
+    }
+}
+
 /// Rows of a block's scratch: row r holds one number of each of the eight particles of the block.
 pub struct Row;
 
@@ -87,32 +131,11 @@ impl Row {
     pub const TRANSVERSE: usize = 7;
     /// Least eigenvalue of L [-].
     pub const LEAST_EIGENVALUE: usize = 8;
-    /// Largest squared speed relative to a neighbour [m²/s²].
-    pub const RELATIVE_SPEED_SQUARED: usize = 9;
-    /// Power of the contact forces per volume [W/m³].
-    pub const POWER: usize = 10;
-    /// First row of the force per volume [N/m³], one row an axis.
-    pub const FORCE: usize = 11;
 
-    /// First row of the half-step change of the velocity [m/s].
-    #[inline(always)]
-    pub const fn half_step<D: Dimension>() -> usize {
-        Self::FORCE + D::COUNT
-    }
-    /// First row of the raw velocity gradient R [1/s]: derivative a of component b at `+ a * COUNT + b`.
-    #[inline(always)]
-    pub const fn velocity_gradient<D: Dimension>() -> usize {
-        Self::half_step::<D>() + D::COUNT
-    }
-    /// First row of K.
-    #[inline(always)]
-    pub const fn correction<D: Dimension>() -> usize {
-        Self::velocity_gradient::<D>() + D::COUNT * D::COUNT
-    }
     /// First row of L.
     #[inline(always)]
     pub const fn gradient_matrix<D: SolidDimension>() -> usize {
-        Self::correction::<D>() + D::STRESS_COUNT
+        Self::LEAST_EIGENVALUE + 1
     }
     /// Number of rows.
     #[inline(always)]

@@ -41,7 +41,7 @@ pub fn marks<D: SolidDimension>(
     marks.resize(lists.n_padded(), 0.0);
     marks.par_iter_mut().enumerate().for_each(|(i, mark)| {
         *mark = 0.0;
-        if i < lists.n_particles {
+        if i < lists.n_particles() {
             let matrix = cloud.matrix(i);
             if rule.marks(matrix) {
                 *mark = BOUNDARY;
@@ -51,7 +51,7 @@ pub fn marks<D: SolidDimension>(
         }
     });
     let boundary: Vec<bool> = marks.iter().map(|&m| m == BOUNDARY).collect();
-    marks.par_iter_mut().take(lists.n_particles).enumerate().for_each(|(i, mark)| {
+    marks.par_iter_mut().take(lists.n_particles()).enumerate().for_each(|(i, mark)| {
         let near = |j: u32| boundary[lists.owner(j as usize)] && cloud.within_smoothing_length(i, j as usize);
         if *mark == 0.0 && lists.neighbors(i).any(near) {
             *mark = NEAR;

@@ -14,7 +14,7 @@
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::lanes::{LANES, Line};
-use sph_core::neighbors::{TILE, TILE_BLOCKS};
+use sph_core::neighbors::TILE;
 use sph_core::particles::{Constraint, Particles};
 use sph_core::tiles::TiledColumn;
 use sph_materials::{Damage, Material};
@@ -22,7 +22,7 @@ use sph_materials::{Damage, Material};
 use crate::dimension::{SolidDimension, symmetric};
 use crate::error::{Stage, StepError};
 use crate::interventions::Interventions;
-use crate::record::Row;
+use crate::record::{Row, Sides, Sums};
 use crate::scheme::{Settings, SurfaceTreatment, VolumeConsistency};
 use crate::time_step::TimeStepReason;
 
@@ -62,6 +62,50 @@ pub struct StepEnd {
     pub reason: TimeStepReason,
 }
 
+/// What the passes found.
+#[derive(Clone, Copy)]
+pub struct Outcome<'a> {
+    /// Rows of blocks.
+    pub rows: &'a [Line],
+    /// Records of the contact pass.
+    pub sides: &'a [Line],
+    /// What pairs added up to.
+    pub sums: &'a [Line],
+}
+
+/// What the passes found for one particle.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    rows: &'a [Line],
+    sides: &'a [Line],
+    sums: &'a [Line],
+    lane: usize,
+}
+
+impl<'a> Found<'a> {
+    #[inline(always)]
+    fn of<D: SolidDimension>(outcome: &Outcome<'a>, i: usize) -> Self {
+        Self {
+            rows: &outcome.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
+            sides: &outcome.sides[i * D::SIDES_LINES..][..D::SIDES_LINES],
+            sums: &outcome.sums[i * D::SUM_LINES..][..D::SUM_LINES],
+            lane: i % LANES,
+        }
+    }
+    #[inline(always)]
+    fn row(&self, r: usize) -> f64 {
+        self.rows[r].0[self.lane]
+    }
+    #[inline(always)]
+    fn side(&self, k: usize) -> f64 {
+        self.sides[k / LANES].0[k % LANES]
+    }
+    #[inline(always)]
+    fn sum(&self, k: usize) -> f64 {
+        self.sums[k / LANES].0[k % LANES]
+    }
+}
+
 /// Columns of particles that a step changes.
 struct Columns<'a, D: Dimension> {
     position: D::Axes<TiledColumn<'a, f64>>,
@@ -89,7 +133,7 @@ pub fn update<D: SolidDimension>(
     particles: &mut Particles<D>,
     materials: &[Material],
     settings: &Settings,
-    rows: &[Line],
+    outcome: Outcome<'_>,
     time_step: f64,
     reports: &mut [TileReport],
 ) {
@@ -122,12 +166,12 @@ pub fn update<D: SolidDimension>(
         packing_excess: &particles.packing_excess,
     };
     reports.par_iter_mut().enumerate().for_each(|(t, report)| {
-        let rows = &rows[t * TILE_BLOCKS * Row::count::<D>()..];
         // SAFETY: the parallel iterator visits every tile once, and these are the only parts taken.
         let mut tile = unsafe { TileColumns::<D>::take(&columns, t) };
         *report = TileReport::default();
         for k in 0..tile.density.len() {
-            tile.particle(k, t * TILE + k, &fixed, &context, rows, report);
+            let i = t * TILE + k;
+            tile.particle(k, i, &fixed, &context, Found::of::<D>(&outcome, i), report);
         }
     });
 }
@@ -189,17 +233,14 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
         i: usize,
         fixed: &Fixed<'_>,
         context: &Context<'_>,
-        rows: &[Line],
+        found: Found<'_>,
         report: &mut TileReport,
     ) {
-        let rows = &rows[k / LANES * Row::count::<D>()..][..Row::count::<D>()];
-        let lane = k % LANES;
-        let row = |r: usize| rows[r].0[lane];
         let tau = context.time_step;
-        self.relative_speed[k] = row(Row::RELATIVE_SPEED_SQUARED).sqrt();
-        let inverse_density = row(Row::INVERSE_DENSITY);
-        let acceleration: D::Axes<f64> = Components::from_fn(|a| row(Row::FORCE + a) * inverse_density);
-        let energy_change = tau * row(Row::POWER) * inverse_density;
+        self.relative_speed[k] = found.sum(Sums::relative_speed_squared::<D>()).sqrt();
+        let inverse_mass = 1.0 / fixed.mass[i];
+        let acceleration: D::Axes<f64> = Components::from_fn(|a| found.sum(Sums::FORCE + a) * inverse_mass);
+        let energy_change = tau * found.sum(Sums::power::<D>()) * inverse_mass;
         let centered = context.settings.scheme.is_time_centered();
         let constraint = fixed.constraint[i];
         let free = constraint == Constraint::Free;
@@ -223,20 +264,23 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
             report.input.work -= fixed.mass[i] * kinetic;
         }
         let material = &context.materials[fixed.material[i] as usize];
-        let gradient = velocity_gradient::<D>(rows, lane, context.settings);
+        let gradient = velocity_gradient::<D>(found, context.settings);
         let divergence: f64 = (0..D::COUNT).map(|a| gradient[a][a]).sum();
         let relaxation = match context.settings.volume_consistency {
-            Some(v) => relaxation_rate(&v, context.settings, fixed, i, rows, lane, tau),
+            Some(v) => relaxation_rate(&v, context.settings, fixed, i, found, tau),
             None => 0.0,
         };
         let acted = &mut report.interventions;
         acted.relaxation_bounded += u64::from(relaxation.abs() >= LARGEST_RELAXATION / tau);
-        acted.inverse_capped += u64::from(row(Row::LEAST_EIGENVALUE) < context.least_eigenvalue);
+        acted.inverse_capped += u64::from(found.row(Row::LEAST_EIGENVALUE) < context.least_eigenvalue);
         let flow_density = self.density[k] * (-tau * divergence).exp();
         self.density[k] =
             if relaxation == 0.0 { flow_density } else { flow_density * (tau * relaxation).exp() };
-        report.relaxation_work +=
-            row(Row::PRESSURE) * fixed.mass[i] * inverse_density * relaxation.abs() * tau;
+        report.relaxation_work += found.row(Row::PRESSURE)
+            * fixed.mass[i]
+            * found.row(Row::INVERSE_DENSITY)
+            * relaxation.abs()
+            * tau;
         self.energy[k] += energy_change - kinetic;
         self.advance_deviator(k, &gradient, material, tau);
         let damage = Damage { failed: self.failed[k], distension: self.distension[k] };
@@ -346,11 +390,11 @@ fn turn<D: Dimension>(s: &mut [[f64; 3]; 3], gradient: &[[f64; 3]; 3], tau: f64)
 
 /// ∂U_b/∂x_a at [a][b], from the raw sum R of the contact pass.
 #[inline(always)]
-fn velocity_gradient<D: SolidDimension>(rows: &[Line], lane: usize, settings: &Settings) -> [[f64; 3]; 3] {
-    let row = |r: usize| rows[r].0[lane];
-    let raw = |a: usize, b: usize| row(Row::velocity_gradient::<D>() + a * D::COUNT + b);
-    let matrix = |base: usize, a: usize, b: usize| row(base + symmetric(D::COUNT, a, b));
-    let (k, l) = (Row::correction::<D>(), Row::gradient_matrix::<D>());
+fn velocity_gradient<D: SolidDimension>(found: Found<'_>, settings: &Settings) -> [[f64; 3]; 3] {
+    let inverse_volume = 1.0 / found.side(Sides::volume::<D>()).abs();
+    let raw = |a: usize, b: usize| found.sum(Sums::gradient::<D>() + a * D::COUNT + b) * inverse_volume;
+    let k = |a: usize, b: usize| found.side(Sides::correction::<D>() + symmetric(D::COUNT, a, b));
+    let l = |a: usize, b: usize| found.row(Row::gradient_matrix::<D>() + symmetric(D::COUNT, a, b));
     let mut turn = [[0.0; 3]; 3];
     if !settings.scheme.reconstructs() {
         // No correction: the raw sum is the gradient.
@@ -360,16 +404,16 @@ fn velocity_gradient<D: SolidDimension>(rows: &[Line], lane: usize, settings: &S
         return turn;
     }
     if matches!(settings.surface, SurfaceTreatment::SpectralCap { .. }) {
-        turn = rigid_turn::<D>(raw, |a, b| matrix(l, a, b));
+        turn = rigid_turn::<D>(raw, l);
     }
     let mut gradient = turn;
     for b in 0..D::COUNT {
         let mut rest = [0.0; 3];
         for a in 0..D::COUNT {
-            rest[a] = raw(a, b) - (0..D::COUNT).map(|c| matrix(l, a, c) * turn[c][b]).sum::<f64>();
+            rest[a] = raw(a, b) - (0..D::COUNT).map(|c| l(a, c) * turn[c][b]).sum::<f64>();
         }
         for a in 0..D::COUNT {
-            gradient[a][b] += (0..D::COUNT).map(|c| matrix(k, a, c) * rest[c]).sum::<f64>();
+            gradient[a][b] += (0..D::COUNT).map(|c| k(a, c) * rest[c]).sum::<f64>();
         }
     }
     gradient
@@ -403,12 +447,11 @@ fn relaxation_rate(
     settings: &Settings,
     fixed: &Fixed<'_>,
     i: usize,
-    rows: &[Line],
-    lane: usize,
+    found: Found<'_>,
     tau: f64,
 ) -> f64 {
     let excess = fixed.packing_excess[i];
-    let row = |r: usize| rows[r].0[lane];
+    let row = |r: usize| found.row(r);
     let yield_strength = row(Row::YIELD_STRENGTH);
     let share = if excess > v.tolerance {
         excess - v.tolerance

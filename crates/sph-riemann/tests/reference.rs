@@ -7,12 +7,13 @@ use sph_core::correction::{Neighbor, gradient_matrix, spectral_cap};
 use sph_core::gradient::{rotation_exact, vector_sum};
 use sph_core::lanes::{InstructionSet, LANES, Line};
 use sph_core::matrix::SquareMatrix;
+use sph_core::neighbors::TILE;
 use sph_core::{Components, Dim2, Dim3, Vector};
 use sph_riemann::contact::acoustic::{Side, solve};
 use sph_riemann::dimension::symmetric;
-use sph_riemann::pass::{Pass, PassKind, Smoothing};
+use sph_riemann::pass::{Pass, Smoothing, TilePairs, collect};
 use sph_riemann::prepare::prepare;
-use sph_riemann::record::{Row, Sides, State};
+use sph_riemann::record::{Row, Sides, State, Sums};
 use sph_riemann::{Limiter, Settings, Simulation, SolidDimension, SurfaceTreatment};
 
 /// Low, so that it acts on many particles.
@@ -24,6 +25,7 @@ struct Passes<D: SolidDimension> {
     state: Vec<Line>,
     sides: Vec<Line>,
     rows: Vec<Line>,
+    sums: Vec<Line>,
     size: Vec<f64>,
 }
 
@@ -41,22 +43,19 @@ impl<D: SolidDimension> Passes<D> {
         let mut rows = vec![Line::default(); padded / LANES * Row::count::<D>()];
         let size = vec![common::SIZE; records];
         prepare(simulation.particles(), simulation.materials(), &mut state, &mut rows);
-        lists.halo.refresh(&mut state, D::STATE_LINES, padded);
+        lists.halo().refresh(&mut state, D::STATE_LINES, padded);
         let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, &size);
         let instructions = InstructionSet::detect();
-        let pass = Pass {
-            kind: PassKind::Gradient(None),
-            lists,
-            smoothing,
-            surface,
-            records: &state,
-            half_step: 0.0,
-            instructions,
-        };
-        pass.run(&mut sides, &mut rows);
-        lists.halo.refresh(&mut sides, D::SIDES_LINES, padded);
-        Pass { kind: PassKind::Contact(Limiter::VanLeer), records: &sides, ..pass }.run(&mut [], &mut rows);
-        Self { simulation, state, sides, rows, size }
+        let pass = Pass { lists, smoothing, surface, records: &state, half_step: 0.0, instructions };
+        pass.gradients(None, &mut sides, &mut rows);
+        lists.halo().refresh(&mut sides, D::SIDES_LINES, padded);
+        let mut sums = vec![Line::default(); padded * D::SUM_LINES];
+        let mut pairs = vec![TilePairs::default(); lists.tiles().len()];
+        let pass = Pass { records: &sides, ..pass };
+        pass.contacts(Some(Limiter::VanLeer), &mut sums, &mut pairs);
+        let tiles = sums.chunks_mut(TILE * D::SUM_LINES).enumerate();
+        tiles.for_each(|(t, own)| collect(lists, &pairs, t, own));
+        Self { simulation, state, sides, rows, sums, size }
     }
 
     fn number(lines: &[Line], stride: usize, record: usize, k: usize) -> f64 {
@@ -73,6 +72,11 @@ impl<D: SolidDimension> Passes<D> {
 
     fn row(&self, i: usize, r: usize) -> f64 {
         self.rows[i / LANES * Row::count::<D>() + r].0[i % LANES]
+    }
+
+    /// A sum of particle `i` per volume.
+    fn sum(&self, i: usize, k: usize) -> f64 {
+        Self::number(&self.sums, D::SUM_LINES, i, k) / self.side(i, Sides::volume::<D>())
     }
 
     fn offset(&self, i: usize, j: usize) -> D::Vector {
@@ -201,9 +205,9 @@ fn contacts_agree<D: SolidDimension>(cells: usize) {
     }
     assert!(largest_force > 1e14, "the block is under load");
     for (i, (force, power)) in sums.iter().enumerate() {
-        let lanes: D::Vector = D::vector(|a| passes.row(i, Row::FORCE + a));
+        let lanes: D::Vector = D::vector(|a| passes.sum(i, Sums::FORCE + a));
         close((lanes - *force).length(), 0.0, largest_force, "force per volume [N/m3]");
-        close(passes.row(i, Row::POWER), *power, largest_power, "power per volume [W/m3]");
+        close(passes.sum(i, Sums::power::<D>()), *power, largest_power, "power per volume [W/m3]");
     }
 }
 

@@ -149,6 +149,14 @@ impl Lanes for Avx2 {
         }
     }
     #[inline(always)]
+    fn sums_and_maximum(self, other: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        unsafe {
+            let (sum, larger) = (_mm256_add_pd(self.1, other.1), _mm256_max_pd(self.1, other.1));
+            Self(_mm256_add_pd(self.0, other.0), _mm256_blend_pd::<0b1000>(sum, larger))
+        }
+    }
+    #[inline(always)]
     fn less_mask(self, limit: Self) -> u8 {
         // SAFETY: the invariant of this module.
         unsafe {

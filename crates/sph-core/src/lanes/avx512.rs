@@ -129,6 +129,11 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
+    fn sums_and_maximum(self, other: Self) -> Self {
+        // SAFETY: the invariant of this module.
+        Self(unsafe { _mm512_mask_add_pd(_mm512_max_pd(self.0, other.0), 0x7f, self.0, other.0) })
+    }
+    #[inline(always)]
     fn less_mask(self, limit: Self) -> u8 {
         // SAFETY: the invariant of this module.
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }

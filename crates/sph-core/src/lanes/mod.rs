@@ -103,6 +103,34 @@ pub trait Lanes: Real {
     fn transpose(block: [Self; LANES]) -> [Self; LANES];
     /// Bit `l` is set where `self < limit` in lane `l`.
     fn less_mask(self, limit: Self) -> u8;
+    /// The sums of both in all lanes but the last, which holds the larger of both (`other` if either is NaN).
+    fn sums_and_maximum(self, other: Self) -> Self;
+    /// Adds to line `line` of eight records of `stride` lines each, one after the other: lane `l` of element `k` goes to
+    /// number `k` of record `indices[l]`, as [`Lanes::sums_and_maximum`] has it if `MAXIMUM`.
+    ///
+    /// # Panics
+    /// In debug builds, if a record is outside `lines`.
+    ///
+    /// # Safety
+    /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbour list guarantees it.
+    #[inline(always)]
+    unsafe fn add_to_records<const MAXIMUM: bool>(
+        block: [Self; LANES],
+        lines: &mut [Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) {
+        let rows = Self::transpose(block);
+        for l in 0..LANES {
+            let at = indices[l] as usize * stride + line;
+            debug_assert!(at < lines.len());
+            // SAFETY: the caller's promise.
+            let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
+            let old = Self::load(record);
+            if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
+        }
+    }
     /// True if `self < limit` in some lane.
     #[inline(always)]
     fn any_less(self, limit: Self) -> bool {
@@ -263,12 +291,16 @@ mod tests {
             let all = [a + b, a - b, a * b, a / b, -a, a.mul_add(b, one), a.abs().sqrt()];
             let picks = [a.max(b), b.max(a), a.min(b), b.min(a), a.select_less(b, a, b)];
             let back = L::transpose(records);
+            let mut sums = [Line([1.5; LANES]); 4];
+            // SAFETY: the second lines of two records of two lines exist.
+            unsafe { L::add_to_records::<true>(records, &mut sums, 2, 1, &[0, 1, 0, 0, 1, 0, 1, 0]) };
+            let sums = sums.map(|line| L::load(&line.0));
             let any = [
                 L::splat(a.any_less(b) as u8 as f64),
                 L::splat(one.any_less(one) as u8 as f64),
                 L::splat(b.less_mask(a) as f64),
             ];
-            for lanes in all.iter().chain(&picks).chain(&records).chain(&back).chain(&any) {
+            for lanes in all.iter().chain(&picks).chain(&records).chain(&back).chain(&any).chain(&sums) {
                 // A NaN's sign and payload are nobody's concern.
                 self.1.extend(lanes.to_array().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
             }
@@ -286,12 +318,16 @@ mod tests {
                 bits
             })
             .collect();
-        assert_eq!(results[0].len(), 31 * LANES);
+        assert_eq!(results[0].len(), 35 * LANES);
         // Element k of record r, line 1, is 100 (2 r + 1) + k.
         assert_eq!(f64::from_bits(results[0][12 * LANES + 8 * 2]), 1502.0);
         assert_eq!(f64::from_bits(results[0][20 * LANES + 2]), 1502.0, "transposed back");
         assert_eq!(&results[0][28 * LANES..][..9], [[1.0_f64.to_bits(); 8].as_slice(), &[0]].concat());
         assert_eq!(f64::from_bits(results[0][30 * LANES]), 0b0000_0101 as f64, "where b < a");
+        let sums = |k: usize| f64::from_bits(results[0][(31 + 1) * LANES + k]);
+        // Lanes 0, 2, 3, 5, 7 hold the records 7, 3, 3, 2, 5; number 0 is summed, number 7 is the largest.
+        assert_eq!(sums(0), 1.5 + 100.0 * (15.0 + 7.0 + 7.0 + 5.0 + 11.0));
+        assert_eq!(sums(7), 1507.0);
         for result in &results[1..] {
             assert_eq!(result, &results[0]);
         }

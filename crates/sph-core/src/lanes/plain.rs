@@ -106,6 +106,12 @@ impl Lanes for Plain {
         std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
     }
     #[inline(never)]
+    fn sums_and_maximum(self, other: Self) -> Self {
+        let mut result = self + other;
+        result.0[LANES - 1] = Real::max(self.0[LANES - 1], other.0[LANES - 1]);
+        result
+    }
+    #[inline(never)]
     fn less_mask(self, limit: Self) -> u8 {
         (0..LANES).fold(0, |mask, l| mask | ((self.0[l] < limit.0[l]) as u8) << l)
     }

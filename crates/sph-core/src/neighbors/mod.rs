@@ -7,7 +7,7 @@
 //! **Layout.** Eight consecutive particles are a block; slot k of a block holds the k-th neighbour of each. Lists of a
 //! block are padded to the longest with the particle itself, at distance zero, whose terms vanish. [`TILE_BLOCKS`]
 //! blocks are a tile: the unit of parallel work. Indices up to `n_padded` are particles; those behind are [`Halo`]
-//! copies.
+//! copies. The first slots of a block list each pair once, for loops that serve both particles of a pair: [`TileLists`].
 //!
 //! The modules `brute_force` and `kd_tree` find the same pairs in independent ways; tests hold the lists to them.
 
@@ -16,6 +16,7 @@ pub mod cell_grid;
 pub mod halo;
 pub mod kd_tree;
 mod search;
+mod tile_lists;
 
 use rayon::prelude::*;
 
@@ -25,22 +26,12 @@ use crate::lanes::LANES;
 use cell_grid::CellSortedPoints;
 pub use halo::Halo;
 use search::Search;
+pub use tile_lists::{Incoming, TileLists};
 
 /// Blocks in a tile.
 pub const TILE_BLOCKS: usize = 32;
 /// Particles in a tile.
 pub const TILE: usize = TILE_BLOCKS * LANES;
-
-/// Lists of the particles of one tile.
-#[derive(Clone, Debug, Default)]
-pub struct TileLists {
-    /// First slot of each block, and the end of the last.
-    pub start: Vec<u32>,
-    /// Slots: the k-th neighbour of each of eight particles.
-    pub slots: Vec<[u32; LANES]>,
-    /// Tiles (this one too) that hold particles seen from here.
-    seen: Vec<u32>,
-}
 
 /// Least and largest displacement of the particles of a tile, by axis [m].
 pub type DisplacementRange = [(f64, f64); 3];
@@ -48,12 +39,9 @@ pub type DisplacementRange = [(f64, f64); 3];
 /// Neighbour lists of all particles, in blocks and tiles.
 #[derive(Clone, Debug, Default)]
 pub struct NeighborLists<D: Dimension> {
-    /// Number of particles.
-    pub n_particles: usize,
-    /// Copies across periodic boundaries; copy h has index `n_padded() + h`.
-    pub halo: Halo<D>,
-    /// The lists, tile by tile.
-    pub tiles: Vec<TileLists>,
+    n_particles: usize,
+    halo: Halo<D>,
+    tiles: Vec<TileLists>,
     /// Positions when the lists were built.
     reference: Vec<Vec<f64>>,
     skin: f64,
@@ -77,11 +65,28 @@ impl<D: Dimension> NeighborLists<D> {
         let halo = Halo::<D>::build(position, domain, farthest);
         let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(position, a));
         let points = CellSortedPoints::<D>::new(&all, farthest.max(f64::MIN_POSITIVE));
-        let search = Search::new(&points, &halo, size, reach, farthest);
+        let search = Search::new(&points, position, &halo, size, reach, farthest);
         let n_tiles = n_particles.div_ceil(TILE);
-        let tiles = (0..n_tiles).into_par_iter().map(|t| search.tile(t, position)).collect();
+        let mut tiles: Vec<TileLists> =
+            (0..n_tiles).into_par_iter().map(|t| search.tile(t, position)).collect();
+        tile_lists::connect(&mut tiles);
         let reference = position.as_ref().to_vec();
         Self { n_particles, halo, tiles, reference, skin: reach.skin }
+    }
+
+    /// Number of particles.
+    pub fn n_particles(&self) -> usize {
+        self.n_particles
+    }
+
+    /// Copies across periodic boundaries; copy h has index `n_padded() + h`.
+    pub fn halo(&self) -> &Halo<D> {
+        &self.halo
+    }
+
+    /// The lists, tile by tile.
+    pub fn tiles(&self) -> &[TileLists] {
+        &self.tiles
     }
 
     /// Number of particles, filled up to whole blocks: the index of the first copy.
@@ -107,9 +112,7 @@ impl<D: Dimension> NeighborLists<D> {
     /// Slots of a block.
     #[inline(always)]
     pub fn block(&self, block: usize) -> &[[u32; LANES]] {
-        let tile = &self.tiles[block / TILE_BLOCKS];
-        let b = block % TILE_BLOCKS;
-        &tile.slots[tile.start[b] as usize..tile.start[b + 1] as usize]
+        self.tiles[block / TILE_BLOCKS].block(block % TILE_BLOCKS)
     }
 
     /// Records listed for a particle (without itself).
@@ -124,9 +127,8 @@ impl<D: Dimension> NeighborLists<D> {
 
     /// Bytes that the lists take.
     pub fn bytes(&self) -> usize {
-        let tile = |t: &TileLists| t.slots.capacity() * 32 + t.start.capacity() * 4 + t.seen.capacity() * 4;
         let halo = self.halo.len() * (4 + size_of::<D::Vector>());
-        self.tiles.iter().map(tile).sum::<usize>() + halo + self.n_particles * 8 * D::COUNT
+        self.tiles.iter().map(TileLists::bytes).sum::<usize>() + halo + self.n_particles * 8 * D::COUNT
     }
 
     /// True if two particles that see each other may have moved by more than the skin against each other: the length
@@ -141,7 +143,7 @@ impl<D: Dimension> NeighborLists<D> {
             let extent = |a: usize| ranges[t][a].1.max(ranges[s][a].1) - ranges[t][a].0.min(ranges[s][a].0);
             D::vector(extent).length()
         };
-        (0..self.tiles.len()).any(|t| self.tiles[t].seen.iter().any(|&s| apart(t, s as usize) > self.skin))
+        (0..self.tiles.len()).any(|t| self.tiles[t].seen().iter().any(|&s| apart(t, s as usize) > self.skin))
     }
 
     fn displacement_range(&self, t: usize, position: &D::AxisColumns) -> DisplacementRange {

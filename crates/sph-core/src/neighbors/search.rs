@@ -1,4 +1,9 @@
 //! The search for the pairs of a tile: eight candidates at a time.
+//!
+//! **Who owns a pair** is decided along a skew line, d = x + 0.3 y + 0.09 z: the particle with the lower d does. Each
+//! particle then owns half of its neighbours, on a lattice exactly: blocks are filled evenly. The difference of two
+//! particles is computed so that it changes nothing but its sign when they change places, images included; what ties is
+//! decided by numbers.
 
 use crate::dimension::{Components, Dimension};
 use crate::lanes::{LANES, LaneKernel, Lanes, dispatch};
@@ -18,11 +23,22 @@ pub(super) struct Search<'a, D: Dimension> {
     /// Coordinates and sizes of the sorted points, filled up by whole lanes.
     position: D::AxisColumns,
     size_of: Vec<f64>,
+    /// Place of each particle along the skew line [m].
+    along: Vec<f64>,
+}
+
+/// Direction of the line that decides who owns a pair: no two points of a lattice near each other lie across it.
+const SKEW: [f64; 3] = [1.0, 0.3, 0.09];
+
+/// Place of a point along the skew line [m].
+fn along<D: Dimension>(coordinate: impl Fn(usize) -> f64) -> f64 {
+    (0..D::COUNT).map(|a| SKEW[a] * coordinate(a)).sum()
 }
 
 impl<'a, D: Dimension> Search<'a, D> {
     pub fn new(
         points: &'a CellSortedPoints<D>,
+        of_particles: &D::AxisColumns,
         halo: &'a Halo<D>,
         size: &'a [f64],
         reach: Reach,
@@ -33,43 +49,27 @@ impl<'a, D: Dimension> Search<'a, D> {
         let filled = |column: &[f64]| column.iter().copied().chain([FAR; LANES]).collect();
         let position = Components::from_fn(|a| filled(&points.position[a]));
         let size_of = points.index.iter().map(|&i| size[owner(i)]).chain([0.0; LANES]).collect();
-        Self { points, halo, size, reach, farthest, position, size_of }
+        let along = (0..n).map(|i| along::<D>(|a| of_particles[a][i])).collect();
+        Self { points, halo, size, reach, farthest, position, size_of, along }
     }
 
     /// Lists of the particles of a tile, at the given positions.
     pub fn tile(&self, tile: usize, position: &D::AxisColumns) -> TileLists {
-        let mut lists = TileLists { start: vec![0], ..Default::default() };
+        let mut lists = TileLists::new();
         dispatch(TileSearch { search: self, tile, position, lists: &mut lists });
-        lists.slots.shrink_to_fit();
         lists
     }
 
-    /// Turns point indices into record indices (copies stand behind the filling) and notes the tiles that are seen.
-    fn mark_seen(&self, found: &mut [u32], seen: &mut [bool]) {
-        let n = self.size.len();
-        let filling = (n.div_ceil(LANES) * LANES - n) as u32;
-        for j in found {
-            let owner = if (*j as usize) < n {
-                *j
-            } else {
-                let owner = self.halo.owner[*j as usize - n];
-                *j += filling;
-                owner
-            };
-            seen[owner as usize / TILE] = true;
-        }
+    /// The particle of a record (copies stand behind the filling).
+    fn owner(&self, record: u32) -> u32 {
+        let padded = self.size.len().div_ceil(LANES) * LANES;
+        if (record as usize) < padded { record } else { self.halo.owner[record as usize - padded] }
     }
 
-    /// Points near particle `i`, in the order of the cells: those within reach in `found`, those in the skin in `beyond`.
-    /// Pairs of the skin stand last, so that the slots of a block that no lane needs yet come together and are skipped.
+    /// Points near particle `i`, in the order of the cells. Pairs of the skin stand last, so that the slots of a block that
+    /// no lane needs yet come together and are skipped.
     #[inline(always)]
-    fn particle<L: Lanes>(
-        &self,
-        i: usize,
-        position: &D::AxisColumns,
-        found: &mut Vec<u32>,
-        beyond: &mut Vec<u32>,
-    ) {
+    fn particle<L: Lanes>(&self, i: usize, position: &D::AxisColumns, lists: &mut Neighbors) {
         let here = D::vector(|a| position[a][i]);
         let (own, factor) = (L::splat(self.size[i]), L::splat(self.reach.factor));
         let skin = L::splat(self.reach.skin);
@@ -90,11 +90,55 @@ impl<'a, D: Dimension> Search<'a, D> {
                     listed &= listed - 1;
                     let j = self.points.index[p + lane];
                     if j as usize != i {
-                        if within >> lane & 1 == 1 { found.push(j) } else { beyond.push(j) }
+                        self.add(i, j, within >> lane & 1 == 1, lists);
                     }
                 }
             }
         });
+        lists.append_skin();
+    }
+
+    /// Adds point `j` to the lists of particle `i` as a record, and notes the tile that is seen.
+    #[inline(always)]
+    fn add(&self, i: usize, j: u32, within: bool, lists: &mut Neighbors) {
+        let n = self.size.len();
+        let copy = (j as usize).checked_sub(n);
+        let owner = copy.map_or(j, |c| self.halo.owner[c]) as usize;
+        let record = if copy.is_some() { j + (n.next_multiple_of(LANES) - n) as u32 } else { j };
+        lists.seen[owner / TILE] = true;
+        let shift = copy.map(|c| self.halo.shift[c]);
+        let difference = self.along[owner] - self.along[i] + shift.map_or(0.0, |s| along::<D>(|a| s[a]));
+        let owns = if difference != 0.0 {
+            difference > 0.0
+        } else if owner != i {
+            owner > i
+        } else {
+            // An image of the particle itself, straight across the skew line.
+            shift.is_some_and(|s| (0..D::COUNT).find(|&a| s[a] != 0.0).is_some_and(|a| s[a] > 0.0))
+        };
+        match (owns, within) {
+            (true, true) => lists.owned.push(record),
+            (true, false) => lists.owned_skin.push(record),
+            (false, true) => lists.others.push(record),
+            (false, false) => lists.others_skin.push(record),
+        }
+    }
+}
+
+/// Neighbours of one particle, as they are found.
+struct Neighbors {
+    owned: Vec<u32>,
+    owned_skin: Vec<u32>,
+    others: Vec<u32>,
+    others_skin: Vec<u32>,
+    /// By tile: true if it holds a neighbour of the particles so far.
+    seen: Vec<bool>,
+}
+
+impl Neighbors {
+    fn append_skin(&mut self) {
+        self.owned.append(&mut self.owned_skin);
+        self.others.append(&mut self.others_skin);
     }
 }
 
@@ -117,29 +161,28 @@ impl<D: Dimension> LaneKernel for TileSearch<'_, '_, D> {
         let Self { search, tile, position, lists } = self;
         let n = search.size.len();
         let (first, end) = (tile * TILE, ((tile + 1) * TILE).min(n));
-        let mut found: [Vec<u32>; LANES] = Default::default();
-        let mut beyond = Vec::new();
-        let mut seen = vec![false; n.div_ceil(TILE)];
+        let mut found = Neighbors {
+            owned: Vec::new(),
+            owned_skin: Vec::new(),
+            others: Vec::new(),
+            others_skin: Vec::new(),
+            seen: vec![false; n.div_ceil(TILE)],
+        };
+        let mut owned: [Vec<u32>; LANES] = Default::default();
+        let mut others: [Vec<u32>; LANES] = Default::default();
         for block in (first..end).step_by(LANES) {
             for lane in 0..LANES {
-                found[lane].clear();
+                owned[lane].clear();
+                others[lane].clear();
                 if block + lane < end {
-                    beyond.clear();
-                    search.particle::<L>(block + lane, position, &mut found[lane], &mut beyond);
-                    found[lane].extend_from_slice(&beyond);
-                    search.mark_seen(&mut found[lane], &mut seen);
+                    search.particle::<L>(block + lane, position, &mut found);
+                    owned[lane].append(&mut found.owned);
+                    others[lane].append(&mut found.others);
                 }
             }
-            let longest = found.iter().map(Vec::len).max().unwrap_or(0);
-            for k in 0..longest {
-                let mut slot = [0; LANES];
-                for l in 0..LANES {
-                    slot[l] = found[l].get(k).copied().unwrap_or((block + l) as u32);
-                }
-                lists.slots.push(slot);
-            }
-            lists.start.push(lists.slots.len() as u32);
+            lists.push_block(block, &owned, &others);
         }
-        lists.seen = (0..seen.len() as u32).filter(|&s| seen[s as usize]).collect();
+        let seen = (0..found.seen.len() as u32).filter(|&s| found.seen[s as usize]).collect();
+        lists.set_targets(tile, seen, |record| search.owner(record));
     }
 }

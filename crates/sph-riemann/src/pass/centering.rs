@@ -4,185 +4,170 @@
 //! acceleration is not: a mode that would grow by sqrt(1 + (ωτ)²/2) a step. Once the forces are known,
 //!
 //! ```text
-//! δ_i   = ½τ f_i/ρ_i - (half-step change of U_i)       where λ_min(L_i) < 0.75 and U is free, else 0
+//! δ_i   = ½τ F_i/m_i - (half-step change of U_i)       where λ_min(L_i) < 0.75 and U is free, else 0
 //! R_ab += Σ V_j ∂_aW (δ_j - δ_i)_b
-//! p_i  += Σ w t*·½(δ_i + δ_j)                          antisymmetric in i, j: energy stays exact
+//! P_i  += Σ F_ij·½(δ_i + δ_j)                          antisymmetric in i, j: energy stays exact
 //! ```
 //!
-//! makes it neutral. Only pairs with δ ≠ 0 on a side count: a list of them is made in each step, tile by tile, and their
-//! contacts are solved again.
+//! makes it neutral. Only pairs with such a particle on a side count. The first pass marks these particles, and the contact
+//! pass keeps the forces of pairs with a mark: no contact is solved again.
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes};
-use sph_core::neighbors::TILE;
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
+use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
-use super::contact::Left;
-use super::{Pass, Tile};
+use super::sums::{TilePairs, add_to_buffer, collect};
+use super::{Pass, load_line, own_indices};
 use crate::dimension::{SolidDimension, dot};
-use crate::limiter::Limiter;
-use crate::record::Row;
-
-/// Pairs of a tile with δ ≠ 0 on a side, in blocks of eight particles as neighbour lists have them.
-#[derive(Clone, Debug, Default)]
-pub struct CenteredPairs {
-    /// Particles of each block; the last one stands in for missing ones, without neighbours.
-    members: Vec<[u32; LANES]>,
-    /// First slot of each block, and the end of the last.
-    start: Vec<u32>,
-    slots: Vec<[u32; LANES]>,
-    /// Particles with neighbours in the list, those with δ ≠ 0 first, and where their neighbours stand in `found`.
-    own: Vec<(u32, u32, u32)>,
-    others: Vec<(u32, u32, u32)>,
-    found: Vec<u32>,
-}
-
-/// Finds the pairs with δ ≠ 0 on a side; `moved` tells it of each record. One entry of `pairs` a tile.
-pub fn find_pairs<D: SolidDimension>(pass: &Pass<'_, D>, moved: &[bool], pairs: &mut [CenteredPairs]) {
-    let n = pass.lists.n_particles;
-    pairs.par_iter_mut().enumerate().for_each(|(t, pairs)| {
-        pairs.collect(pass, moved, t * TILE..((t + 1) * TILE).min(n));
-        pairs.pack();
-    });
-}
-
-impl CenteredPairs {
-    fn collect<D: SolidDimension>(
-        &mut self,
-        pass: &Pass<'_, D>,
-        moved: &[bool],
-        particles: std::ops::Range<usize>,
-    ) {
-        // Pairs beyond the support add exact zeros; where h is one number it is cheap to leave them out.
-        let reach = pass.smoothing.uniform_reach().unwrap_or(f64::INFINITY);
-        let place = |record: usize| &pass.records[record * D::SIDES_LINES].0;
-        let within = |i: usize, j: usize| {
-            let (here, there) = (place(i), place(j));
-            (0..D::COUNT).map(|a| (there[a] - here[a]) * (there[a] - here[a])).sum::<f64>() < reach * reach
-        };
-        self.own.clear();
-        self.others.clear();
-        self.found.clear();
-        for i in particles {
-            let first = self.found.len() as u32;
-            let all = moved[i];
-            for slot in pass.lists.block(i / LANES) {
-                let j = slot[i % LANES];
-                if j as usize != i && (all || moved[j as usize]) && within(i, j as usize) {
-                    self.found.push(j);
-                }
-            }
-            let end = self.found.len() as u32;
-            if end > first {
-                if all { &mut self.own } else { &mut self.others }.push((i as u32, first, end));
-            }
-        }
-    }
-
-    /// Blocks of eight from particles of like numbers of pairs.
-    fn pack(&mut self) {
-        self.members.clear();
-        self.slots.clear();
-        self.start.clear();
-        self.start.push(0);
-        let listed = || self.own.iter().chain(&self.others);
-        let count = self.own.len() + self.others.len();
-        for block in 0..count.div_ceil(LANES) {
-            let mut eight = [(0, 0, 0); LANES];
-            let mut of_block = listed().skip(block * LANES);
-            let last = of_block.clone().take(LANES).last().copied().unwrap_or_default();
-            eight.fill_with(|| of_block.next().copied().unwrap_or((last.0, 0, 0)));
-            let longest = eight.iter().map(|(_, first, end)| end - first).max().unwrap_or(0);
-            self.members.push(eight.map(|(i, _, _)| i));
-            for k in 0..longest {
-                self.slots.push(eight.map(|(i, first, end)| {
-                    if first + k < end { self.found[(first + k) as usize] } else { i }
-                }));
-            }
-            self.start.push(self.slots.len() as u32);
-        }
-    }
-}
+use crate::record::{Centered, Sides, Sums};
 
 /// The pass over one tile.
 pub(super) struct CenteringTile<'a, 'b, D: SolidDimension> {
     pub pass: &'a Pass<'b, D>,
-    pub tile: Tile<'a>,
-    pub limiter: Limiter,
-    /// δ of each record, by axis [m/s].
-    pub delta: &'a [Vec<f64>],
-    pub pairs: &'a CenteredPairs,
+    pub index: usize,
+    pub pairs: &'a TilePairs,
+    pub buffer: &'a mut [Line],
 }
 
-/// Sums of a block.
-struct Sums<D: SolidDimension, L: Lanes> {
-    power: L,
-    gradient: D::Axes<D::Axes<L>>,
+/// Where the sums of the contact pass stand before time-centring, and what it reads of particles.
+pub struct Deltas<'a, D: SolidDimension> {
+    /// The lists.
+    pub lists: &'a NeighborLists<D>,
+    /// What the pairs of each tile left behind.
+    pub pairs: &'a [TilePairs],
+    /// Records of the contact pass.
+    pub sides: &'a [Line],
+    /// Velocity at the start of the step [m/s].
+    pub velocity: &'a D::AxisColumns,
+    /// Mass [kg], per metre of depth in the plane.
+    pub mass: &'a [f64],
+    /// Half the time step [s].
+    pub half_step: f64,
 }
 
-impl<D: SolidDimension> CenteringTile<'_, '_, D> {
-    #[inline(always)]
-    fn delta_of<L: Lanes>(&self, indices: &[u32; LANES]) -> D::Axes<L> {
-        let mut delta = D::Axes::<L>::splat(L::zero());
-        for a in 0..D::COUNT {
-            delta[a] = L::gather(&self.delta[a], indices);
-        }
-        delta
-    }
-
-    #[inline(always)]
-    fn sums<L: Lanes>(&self, members: &[u32; LANES], slots: &[[u32; LANES]]) -> Sums<D, L> {
-        let left = Left::<D, L, true>::load(self.pass, members);
-        let own = self.delta_of::<L>(members);
-        let half = L::splat(0.5);
-        let mut power = L::zero();
-        let mut gradient = D::Axes::<D::Axes<L>>::splat(D::Axes::<L>::splat(L::zero()));
-        for slot in slots {
-            let Some(pair) = left.contact(self.pass, self.limiter, slot) else { continue };
-            let other = self.delta_of::<L>(slot);
-            let (mut mean, mut change) = (own, own);
-            for a in 0..D::COUNT {
-                mean[a] = half * (own[a] + other[a]);
-                // The gradient of a pair carries the factor 2 of U* - U_i.
-                change[a] = half * (other[a] - own[a]);
-            }
-            power += dot::<D, L>(&pair.force, &mean);
-            for a in 0..D::COUNT {
-                for b in 0..D::COUNT {
-                    gradient[a][b] = pair.gradient[a].mul_add(change[b], gradient[a][b]);
+impl<D: SolidDimension> Deltas<'_, D> {
+    /// Collects the sums of the contact pass; then fills the records of time-centring, if any pair is marked. True if so.
+    pub fn fill(&self, sums: &mut [Line], records: &mut [Line]) -> bool {
+        let needed = self.pairs.iter().any(TilePairs::has_marked);
+        let own = &mut records[..self.lists.n_padded() * D::STATE_LINES];
+        let tiles = sums
+            .par_chunks_mut(TILE * D::SUM_LINES)
+            .zip(own.par_chunks_mut(TILE * D::STATE_LINES))
+            .enumerate();
+        tiles.for_each(|(t, (sums, records))| {
+            collect::<D>(self.lists, self.pairs, t, sums);
+            if needed {
+                let of_tile = sums.chunks_exact(D::SUM_LINES).zip(records.chunks_exact_mut(D::STATE_LINES));
+                for (k, (sums, record)) in of_tile.enumerate() {
+                    self.particle(t * TILE + k, sums, &mut record[0].0);
                 }
             }
-        }
-        Sums { power, gradient }
+        });
+        needed
     }
 
-    /// Adds the sums to the rows of each particle once.
-    #[inline(always)]
-    fn add<L: Lanes>(&mut self, members: &[u32; LANES], sums: &Sums<D, L>) {
-        let once = |l: usize| l == 0 || members[l] != members[l - 1];
-        let mut into = |r: usize, sum: L| {
-            let sum = sum.to_array();
-            for l in (0..LANES).filter(|&l| once(l)) {
-                let k = members[l] as usize - self.tile.index * TILE;
-                self.tile.rows[k / LANES * Row::count::<D>() + r].0[k % LANES] += sum[l];
-            }
-        };
-        into(Row::POWER, sums.power);
+    fn particle(&self, i: usize, sums: &[Line], record: &mut [f64; LANES]) {
+        let side = |k: usize| self.sides[i * D::SIDES_LINES + k / LANES].0[k % LANES];
+        let volume = side(Sides::volume::<D>());
+        record[Centered::volume::<D>()] = volume.abs();
+        let marked = volume < 0.0;
         for a in 0..D::COUNT {
-            for b in 0..D::COUNT {
-                into(Row::velocity_gradient::<D>() + a * D::COUNT + b, sums.gradient[a][b]);
-            }
+            record[a] = side(a);
+            record[Centered::delta::<D>() + a] = if marked {
+                let half_step_change = side(Sides::fields::<D>() + a) - self.velocity[a][i];
+                self.half_step * sums[0].0[Sums::FORCE + a] / self.mass[i] - half_step_change
+            } else {
+                0.0
+            };
         }
     }
 }
 
 impl<D: SolidDimension> LaneKernel for CenteringTile<'_, '_, D> {
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        let pairs = self.pairs;
-        for (members, range) in pairs.members.iter().zip(pairs.start.windows(2)) {
-            let sums = self.sums::<L>(members, &pairs.slots[range[0] as usize..range[1] as usize]);
-            self.add(members, &sums);
+    fn run<L: Lanes>(self) {
+        let Self { pass, index, pairs, buffer } = self;
+        let lists = &pass.lists.tiles()[index];
+        let mut marked = pairs.marked.iter();
+        let mut forces = pairs.forces.chunks_exact(D::COUNT);
+        for b in 0..lists.n_blocks() {
+            let (slots, targets) = lists.pairs(b);
+            let marks = &marked.as_slice()[..slots.len()];
+            marked = marked.as_slice()[slots.len()..].iter();
+            if !marks.contains(&true) {
+                continue;
+            }
+            let left = Left::<D, L>::load(pass, &own_indices(index * TILE_BLOCKS + b));
+            let mut own = D::SumsRecord::<L>::splat(L::zero());
+            for k in 0..slots.len() {
+                let (true, Some(force)) = (marks[k], if marks[k] { forces.next() } else { None }) else {
+                    continue;
+                };
+                let other = left.pair(pass, &slots[k], force, &mut own);
+                // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
+                unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k]) };
+            }
+            // SAFETY: as above; places of own particles come first.
+            unsafe { add_to_buffer::<D, L>(&own, buffer, &own_indices(b)) };
         }
+    }
+}
+
+/// The left particles of eight pairs.
+struct Left<D: SolidDimension, L: Lanes> {
+    record: D::StateRecord<L>,
+    size: L,
+}
+
+impl<D: SolidDimension, L: Lanes> Left<D, L> {
+    #[inline(always)]
+    fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
+        let mut record = D::StateRecord::<L>::splat(L::zero());
+        // SAFETY: indices of particles are below `n_padded`, and records reach to `n_records`.
+        unsafe { load_line(&mut record, pass.records, D::STATE_LINES, 0, indices) };
+        Self { record, size: pass.smoothing.own(indices) }
+    }
+
+    /// Adds what the pair gives to the left particle, and returns what it gives to the right one.
+    #[inline(always)]
+    fn pair(
+        &self,
+        pass: &Pass<'_, D>,
+        slot: &[u32; LANES],
+        force: &[Line],
+        own: &mut D::SumsRecord<L>,
+    ) -> D::SumsRecord<L> {
+        let left = &self.record;
+        let mut right = D::StateRecord::<L>::splat(L::zero());
+        // SAFETY: entries of a list are below `n_records`, the length of the records.
+        unsafe { load_line(&mut right, pass.records, D::STATE_LINES, 0, slot) };
+        let mut dx = D::Axes::<L>::splat(L::zero());
+        let (mut mean, mut change, mut contact) = (dx, dx, dx);
+        for a in 0..D::COUNT {
+            let (here, there) = (left[Centered::delta::<D>() + a], right[Centered::delta::<D>() + a]);
+            dx[a] = right[a] - left[a];
+            mean[a] = L::splat(0.5) * (here + there);
+            change[a] = there - here;
+            contact[a] = L::load(&force[a].0);
+        }
+        let scales = pass.smoothing.scales(self.size, slot);
+        let q = dot::<D, L>(&dx, &dx).sqrt() * scales.inverse_h;
+        let volumes = left[Centered::volume::<D>()] * right[Centered::volume::<D>()];
+        let weight = volumes * (scales.slope * pass.smoothing.minus_slope_over_q(q));
+        let power = dot::<D, L>(&contact, &mean);
+        let mut other = D::SumsRecord::<L>::splat(L::zero());
+        own[Sums::power::<D>()] += power;
+        other[Sums::power::<D>()] = -power;
+        for a in 0..D::COUNT {
+            let gradient = weight * dx[a];
+            for b in 0..D::COUNT {
+                // The same for both: dx and the change both turn around.
+                let product = gradient * change[b];
+                own[Sums::gradient::<D>() + a * D::COUNT + b] += product;
+                other[Sums::gradient::<D>() + a * D::COUNT + b] = product;
+            }
+        }
+        other
     }
 }

@@ -16,7 +16,7 @@
 //! of both sides,
 //!
 //! ```text
-//! f_i += Σ_j w_ij ½(σ_i + σ_j)·(λ_i - λ_j)       p_i += Σ_j w_ij (½(σ_i + σ_j)·(λ_i - λ_j))·½(U_i + U_j)
+//! F_i += V_i Σ_j w_ij ½(σ_i + σ_j)·(λ_i - λ_j)   P_i += V_i Σ_j w_ij (½(σ_i + σ_j)·(λ_i - λ_j))·½(U_i + U_j)
 //! ```
 //!
 //! antisymmetric again: momentum and total energy stay exact. On a lattice λ is zero up to rounding.
@@ -31,9 +31,10 @@ use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
 use sph_core::neighbors::{TILE, TILE_BLOCKS};
 
-use super::{Pass, PassKind, Tile, load_line, own_indices, store_records};
+use super::sums::add_to_buffer;
+use super::{Pass, Tile, Work, load_line, own_indices, store_records};
 use crate::dimension::{SolidDimension, dot, times};
-use crate::record::{Row, Sides};
+use crate::record::{Row, Sides, Sums};
 
 /// Below this eigenvalue of L a particle is at a free surface.
 const SURFACE_EIGENVALUE: f64 = 0.75;
@@ -60,70 +61,75 @@ impl Face {
 
 /// Which part of the closure a pass does.
 #[derive(Clone, Copy)]
-pub enum ClosureStage<'a> {
-    /// Gaps from the records of the second pass; the first sweep with them.
+pub(super) enum Stage<'a> {
+    /// Gaps from the records of the second pass; the first sweep with them. Writes face records.
     Gaps,
-    /// One more sweep, from face records.
+    /// One more sweep, from face records. Writes face records.
     Sweep,
-    /// Forces and power, from the records of the second pass and these face records.
+    /// Forces and power, from the records of the second pass and these face records. Adds to sums.
     Forces(&'a [Line]),
 }
 
 impl<D: SolidDimension> Pass<'_, D> {
-    /// Closes the faces with `sweeps` Jacobi sweeps and adds force and power to the rows. `faces` is scratch for two face
-    /// records a particle and copy; `self` is the contact pass.
-    pub fn close_faces(&self, sweeps: u32, faces: &mut [Vec<Line>; 2], rows: &mut [Line]) {
+    /// Closes the faces with `sweeps` Jacobi sweeps and adds force and power to the sums. `faces` is scratch for two face
+    /// records a particle and copy; `self` is the contact pass, `rows` those of the first pass.
+    ///
+    /// # Panics
+    /// As [`Pass::gradients`].
+    pub fn close_faces(&self, sweeps: u32, faces: &mut [Vec<Line>; 2], rows: &[Line], sums: &mut [Line]) {
         let (stride, padded) = (D::FACE_LINES, self.lists.n_padded());
         faces.iter_mut().for_each(|f| f.resize(self.lists.n_records() * stride, Line::default()));
         let [mut new, mut old] = faces.each_mut().map(Vec::as_mut_slice);
-        self.stage(ClosureStage::Gaps, self.records).write_faces(new, rows);
-        self.lists.halo.refresh(new, stride, padded);
+        self.run_closure(Stage::Gaps, rows, &mut new[..padded * stride]);
+        self.lists.halo().refresh(new, stride, padded);
         for _ in 1..sweeps {
             std::mem::swap(&mut new, &mut old);
-            self.stage(ClosureStage::Sweep, old).write_faces(new, rows);
-            self.lists.halo.refresh(new, stride, padded);
+            Pass { records: old, ..*self }.run_closure(Stage::Sweep, rows, &mut new[..padded * stride]);
+            self.lists.halo().refresh(new, stride, padded);
         }
-        self.stage(ClosureStage::Forces(new), self.records).run(&mut [], rows);
+        self.run_closure(Stage::Forces(new), rows, &mut sums[..padded * D::SUM_LINES]);
     }
 
-    fn stage<'a>(&'a self, stage: ClosureStage<'a>, records: &'a [Line]) -> Pass<'a, D> {
-        Pass { kind: PassKind::Closure(stage), records, ..*self }
-    }
-
-    /// Runs a pass that writes face records.
-    fn write_faces(&self, faces: &mut [Line], rows: &mut [Line]) {
-        assert!(self.records.len() >= self.lists.n_records() * self.stride(), "records of every particle");
-        let own = &mut faces[..self.lists.n_padded() * D::FACE_LINES];
-        rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>())
-            .zip(own.par_chunks_mut(TILE * D::FACE_LINES))
+    /// Runs a stage on each tile with its part of the output: face records, or sums.
+    fn run_closure(&self, stage: Stage<'_>, rows: &[Line], output: &mut [Line]) {
+        let (read, written) = match stage {
+            Stage::Gaps => (D::SIDES_LINES, D::FACE_LINES),
+            Stage::Sweep => (D::FACE_LINES, D::FACE_LINES),
+            Stage::Forces(_) => (D::SIDES_LINES, D::SUM_LINES),
+        };
+        self.check_records(read);
+        rows.par_chunks(TILE_BLOCKS * Row::count::<D>())
+            .zip(output.par_chunks_mut(TILE * written))
             .enumerate()
-            .for_each(|(index, (rows, sides))| D::run(self, Tile { index, sides, rows }));
+            .for_each(|(index, (rows, output))| {
+                D::run(self, Tile { index, work: Work::Closure { stage, rows, output } });
+            });
     }
 }
 
 /// The pass over one tile.
 pub(super) struct ClosureTile<'a, 'b, D: SolidDimension> {
     pub pass: &'a Pass<'b, D>,
-    pub tile: Tile<'a>,
-    pub stage: ClosureStage<'a>,
+    pub index: usize,
+    pub stage: Stage<'a>,
+    pub rows: &'a [Line],
+    pub output: &'a mut [Line],
 }
 
 impl<D: SolidDimension> LaneKernel for ClosureTile<'_, '_, D> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { pass, tile, stage } = self;
-        let lists = pass.tile_lists(tile.index);
-        let row_blocks = tile.rows.chunks_exact_mut(Row::count::<D>());
-        let mut faces = tile.sides.chunks_exact_mut(LANES * D::FACE_LINES);
-        for (b, rows) in row_blocks.enumerate() {
-            let own = own_indices(tile.index * TILE_BLOCKS + b);
-            let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
-            let block = Block { pass, own: &own, slots };
-            match (stage, faces.next()) {
-                (ClosureStage::Gaps, Some(faces)) => block.gaps::<L>(rows, faces),
-                (ClosureStage::Sweep, Some(faces)) => block.sweep::<L>(faces),
-                (ClosureStage::Forces(of), _) => block.forces::<L>(of, rows),
-                (_, None) => unreachable!("face records of every block are written"),
+        let Self { pass, index, stage, rows, output } = self;
+        let lists = &pass.lists.tiles()[index];
+        let stride = LANES * if matches!(stage, Stage::Forces(_)) { D::SUM_LINES } else { D::FACE_LINES };
+        let blocks = rows.chunks_exact(Row::count::<D>()).zip(output.chunks_exact_mut(stride));
+        for (b, (rows, output)) in blocks.enumerate() {
+            let own = own_indices(index * TILE_BLOCKS + b);
+            let block = Block { pass, own: &own, slots: lists.block(b) };
+            match stage {
+                Stage::Gaps => block.gaps::<L>(rows, output),
+                Stage::Sweep => block.sweep::<L>(output),
+                Stage::Forces(of) => block.forces::<L>(of, output),
             }
         }
     }
@@ -152,7 +158,8 @@ impl<D: SolidDimension> Block<'_, '_, D> {
         let smoothing = self.pass.smoothing;
         let scales = smoothing.scales(smoothing.own::<L>(self.own), slot);
         let r = dot::<D, L>(&dx, &dx).sqrt();
-        let volume = other[Face::volume::<D>()];
+        // Marked records have a minus sign.
+        let volume = other[Face::volume::<D>()].abs();
         let q = r * scales.inverse_h;
         ((volume + volume) * scales.slope * smoothing.minus_slope_over_q(q) * r, dx)
     }
@@ -202,6 +209,7 @@ impl<D: SolidDimension> Block<'_, '_, D> {
         for k in 0..=Face::volume::<D>() {
             face[k] = own[k];
         }
+        face[Face::volume::<D>()] = own[Sides::volume::<D>()].abs();
         for a in 0..D::COUNT {
             face[Face::gap::<D>() + a] = gap[a];
             face[Face::shift::<D>() + a] = -(L::splat(RELAXATION) * gap[a] * inverse);
@@ -238,7 +246,7 @@ impl<D: SolidDimension> Block<'_, '_, D> {
     }
 
     #[inline(always)]
-    fn forces<L: Lanes>(&self, faces: &[Line], rows: &mut [Line]) {
+    fn forces<L: Lanes>(&self, faces: &[Line], sums: &mut [Line]) {
         let own = self.load_sides::<L>(self.own);
         let shift = self.load_shift::<L>(faces, self.own);
         let mut force = D::Axes::<L>::splat(L::zero());
@@ -263,10 +271,14 @@ impl<D: SolidDimension> Block<'_, '_, D> {
                 force[a] += of_pair[a];
             }
         }
-        add(&mut rows[Row::POWER], power);
+        let volume = own[Sides::volume::<D>()].abs();
+        let mut record = D::SumsRecord::<L>::splat(L::zero());
+        record[Sums::power::<D>()] = volume * power;
         for a in 0..D::COUNT {
-            add(&mut rows[Row::FORCE + a], force[a]);
+            record[Sums::FORCE + a] = volume * force[a];
         }
+        // SAFETY: `sums` are those of the block.
+        unsafe { add_to_buffer::<D, L>(&record, sums, &own_indices(0)) };
     }
 
     #[inline(always)]
@@ -280,9 +292,4 @@ impl<D: SolidDimension> Block<'_, '_, D> {
         }
         shift
     }
-}
-
-#[inline(always)]
-fn add<L: Lanes>(row: &mut Line, sum: L) {
-    (L::load(&row.0) + sum).store(&mut row.0);
 }

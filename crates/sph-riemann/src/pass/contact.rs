@@ -3,9 +3,9 @@
 //! ```text
 //! Φ_l, Φ_r  reconstructed from both sides                                       (paper eqs. (13)-(15))
 //! U*, t*    from the acoustic contact along R, S, T with tractions σ ½(K_i + K_j) e_R
-//! f_i      += w t*          w = 2 V_j |W'_ij| / h_ij                            (paper eq. (10), per volume)
-//! p_i      += w t*·U*                                                           (paper eq. (11), per volume)
-//! R_ab     += w e_a (U* - U_i)_b                                                (paper eqs. (9), (20), raw)
+//! F_i      += w t*,            F_j    -= w t*         w = 2 V_i V_j |W'_ij| / h_ij      (paper eq. (10) times m)
+//! P_i      += w t*·U*,         P_j    -= w t*·U*                                        (paper eq. (11) times m)
+//! V_i R_ab += w e_a (U* - U_i)_b,   V_j R_ab -= w e_a (U* - U_j)_b                      (paper eqs. (9), (20), raw)
 //! ```
 //!
 //! With the spectral cap the traction is completed to the adjoint of the velocity gradient,
@@ -14,60 +14,91 @@
 //! t* += (w_l σ_l - w_r σ_r)·½(K_i - K_j) e_R - (w_l c_i + w_r c_j) × e_R,   w_l = z_r/(z_l + z_r), w_r = z_l/(z_l + z_r)
 //! ```
 //!
-//! so that each side exerts σ K e - c × e of its own, while U* keeps the mean correction. Everything is antisymmetric in the exchange of i and j: momentum and
-//! total energy are conserved to round-off.
+//! so that each side exerts σ K e - c × e of its own, while U* keeps the mean correction. Each pair is solved once: what one
+//! particle gains in momentum and energy the other loses, bit for bit, and the sums conserve both to round-off.
 
 use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
 
-use super::{Pass, Tile, load_line, own_indices};
-use crate::contact::acoustic::velocity_change;
+use super::sums::{TilePairs, add_to_buffer};
+use super::{Pass, load_line, own_indices};
 use crate::dimension::{SolidDimension, cross, dot, times};
 use crate::limiter::{Limiter, SlopeLimiter, with_limiter};
-use crate::record::{Row, Sides};
+use crate::record::{Sides, Sums};
 use crate::scheme::SurfaceTreatment;
 
 /// Sum of transverse impedances of two fluids [kg/(m² s)]: small against any other, not so small that its inverse would
 /// not be finite.
 const NO_IMPEDANCE: f64 = 1e-30;
 
+/// Added to gradients so that none is exactly zero: small against any that a field can show.
+const LEAST_GRADIENT: f64 = 1e-100;
+
 /// The pass over one tile. `RECONSTRUCT` is false for piecewise constant sides without correction.
 pub(super) struct ContactTile<'a, 'b, D: SolidDimension, const RECONSTRUCT: bool> {
     pub pass: &'a Pass<'b, D>,
-    pub tile: Tile<'a>,
+    pub index: usize,
     pub limiter: Limiter,
+    pub pairs: &'a mut TilePairs,
+    pub buffer: &'a mut [Line],
 }
 
-/// What the contact of a pair gives to the left particle.
-pub(super) struct PairContact<D: SolidDimension, L: Lanes> {
-    /// w e_R = 2 V_j ∇_iW_ij, without correction [1/m].
-    pub gradient: D::Axes<L>,
-    /// w t* [N/m³].
-    pub force: D::Axes<L>,
+/// What the contact of a pair gives.
+struct PairContact<D: SolidDimension, L: Lanes> {
+    /// w e_R [m^(d-1)].
+    gradient: D::Axes<L>,
+    /// w t* [N].
+    force: D::Axes<L>,
     /// U* [m/s].
-    pub velocity: D::Axes<L>,
+    velocity: D::Axes<L>,
+    /// U_j [m/s], half a step later.
+    right_velocity: D::Axes<L>,
     /// (U_j - U_i)² [m²/s²].
-    pub relative_speed_squared: L,
+    relative_speed_squared: L,
+    /// True if time-centring needs the force of one of the eight pairs.
+    marked: bool,
 }
 
 impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, '_, D, RECONSTRUCT> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { pass, tile, limiter } = self;
-        let lists = pass.tile_lists(tile.index);
-        let first_block = tile.index * sph_core::neighbors::TILE_BLOCKS;
-        for (b, rows) in tile.rows.chunks_exact_mut(Row::count::<D>()).enumerate() {
-            let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
-            let left = Left::<D, L, RECONSTRUCT>::load(pass, &own_indices(first_block + b));
-            left.gather(pass, limiter, slots, rows);
+        let Self { pass, index, limiter, pairs, buffer } = self;
+        let lists = &pass.lists.tiles()[index];
+        pairs.clear_forces();
+        for b in 0..lists.n_blocks() {
+            let (slots, targets) = lists.pairs(b);
+            let left = Left::<D, L, RECONSTRUCT>::load(
+                pass,
+                &own_indices(index * sph_core::neighbors::TILE_BLOCKS + b),
+            );
+            let mut own = D::SumsRecord::<L>::splat(L::zero());
+            for k in 0..slots.len() {
+                let pair = left.contact(pass, limiter, &slots[k]);
+                pairs.marked.push(pair.as_ref().is_some_and(|pair| pair.marked));
+                let Some(pair) = pair else { continue };
+                if pair.marked {
+                    for a in 0..D::COUNT {
+                        pairs.forces.push(Line::default());
+                        let last = pairs.forces.len() - 1;
+                        pair.force[a].store(&mut pairs.forces[last].0);
+                    }
+                }
+                let other = left.share(&pair, &mut own);
+                // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
+                unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k]) };
+            }
+            // SAFETY: as above; places of own particles come first.
+            unsafe { add_to_buffer::<D, L>(&own, buffer, &own_indices(b)) };
         }
     }
 }
 
 /// The left sides of eight pairs.
-pub(super) struct Left<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> {
+struct Left<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> {
     record: D::SidesRecord<L>,
     size: L,
+    twice_volume: L,
+    marked: bool,
 }
 
 impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT> {
@@ -76,46 +107,45 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         if RECONSTRUCT { D::SIDES_LINES } else { (Sides::correction::<D>() - 1) / LANES + 1 };
 
     #[inline(always)]
-    pub fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
+    fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
         let mut record = D::SidesRecord::<L>::splat(L::zero());
         for line in 0..Self::LINES {
             // SAFETY: indices of particles are below `n_padded`, and records reach to `n_records`.
             unsafe { load_line(&mut record, pass.records, D::SIDES_LINES, line, indices) };
         }
-        Self { record, size: pass.smoothing.own(indices) }
+        let volume = record[Sides::volume::<D>()];
+        let twice_volume = (volume + volume).abs();
+        let marked = volume.any_less(L::zero());
+        Self { record, size: pass.smoothing.own(indices), twice_volume, marked }
     }
 
-    /// Sums over the neighbours, into the rows of the block.
+    /// Adds what the pair gives to the left particle, and returns what it gives to the right one.
     #[inline(always)]
-    fn gather(&self, pass: &Pass<'_, D>, limiter: Limiter, slots: &[[u32; LANES]], rows: &mut [Line]) {
-        let mut force = D::Axes::<L>::splat(L::zero());
-        let mut gradient = D::Axes::<D::Axes<L>>::splat(force);
-        let (mut power, mut fastest) = (L::zero(), L::zero());
-        for slot in slots {
-            let Some(pair) = self.contact(pass, limiter, slot) else { continue };
-            for b in 0..D::COUNT {
-                force[b] += pair.force[b];
-                let change = pair.velocity[b] - self.record[Sides::fields::<D>() + b];
-                for a in 0..D::COUNT {
-                    gradient[a][b] = pair.gradient[a].mul_add(change, gradient[a][b]);
-                }
-            }
-            power += dot::<D, L>(&pair.force, &pair.velocity);
-            fastest = pair.relative_speed_squared.max(fastest);
-        }
-        power.store(&mut rows[Row::POWER].0);
-        fastest.store(&mut rows[Row::RELATIVE_SPEED_SQUARED].0);
-        for a in 0..D::COUNT {
-            force[a].store(&mut rows[Row::FORCE + a].0);
-            for b in 0..D::COUNT {
-                gradient[a][b].store(&mut rows[Row::velocity_gradient::<D>() + a * D::COUNT + b].0);
+    fn share(&self, pair: &PairContact<D, L>, own: &mut D::SumsRecord<L>) -> D::SumsRecord<L> {
+        let mut other = D::SumsRecord::<L>::splat(L::zero());
+        for b in 0..D::COUNT {
+            own[Sums::FORCE + b] += pair.force[b];
+            other[Sums::FORCE + b] = -pair.force[b];
+            let left_change = pair.velocity[b] - self.record[Sides::fields::<D>() + b];
+            let right_change = pair.right_velocity[b] - pair.velocity[b];
+            for a in 0..D::COUNT {
+                let at = Sums::gradient::<D>() + a * D::COUNT + b;
+                own[at] = pair.gradient[a].mul_add(left_change, own[at]);
+                other[at] = pair.gradient[a] * right_change;
             }
         }
+        let power = dot::<D, L>(&pair.force, &pair.velocity);
+        own[Sums::power::<D>()] += power;
+        other[Sums::power::<D>()] = -power;
+        let fastest = Sums::relative_speed_squared::<D>();
+        own[fastest] = pair.relative_speed_squared.max(own[fastest]);
+        other[fastest] = pair.relative_speed_squared;
+        other
     }
 
     /// The contacts of eight pairs; `None` if all are out of reach.
     #[inline(always)]
-    pub fn contact(
+    fn contact(
         &self,
         pass: &Pass<'_, D>,
         limiter: Limiter,
@@ -140,14 +170,16 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
             unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, line, slot) };
         }
         let volume = right[Sides::volume::<D>()];
-        let weight = (volume + volume) * scales.slope * pass.smoothing.minus_slope_over_q(q);
+        let volumes = self.twice_volume * volume.abs();
+        let weight = volumes * (scales.slope * pass.smoothing.minus_slope_over_q(q));
         // A particle stands in for missing neighbours of its own: e = 0 there, and all is zero.
         let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
-        let (mut gradient, mut e, mut du) = (dx, dx, dx);
+        let (mut gradient, mut e, mut du, mut right_velocity) = (dx, dx, dx, dx);
         for a in 0..D::COUNT {
             gradient[a] = weight * dx[a];
             e[a] = dx[a] * inverse_r;
-            du[a] = right[Sides::fields::<D>() + a] - left[Sides::fields::<D>() + a];
+            right_velocity[a] = right[Sides::fields::<D>() + a];
+            du[a] = right_velocity[a] - left[Sides::fields::<D>() + a];
         }
         let sides = Pair { left, right: &right, dx: &dx, e: &e };
         let (velocity, mut force) = sides.star::<RECONSTRUCT>(pass, limiter);
@@ -158,7 +190,8 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         // Pairs of the skin do not count: when lists are rebuilt must not matter.
         let support = L::splat(pass.smoothing.support());
         let relative_speed_squared = q.select_less(support, dot::<D, L>(&du, &du), L::zero());
-        Some(PairContact { gradient, force, velocity, relative_speed_squared })
+        let marked = self.marked || volume.any_less(L::zero());
+        Some(PairContact { gradient, force, velocity, right_velocity, relative_speed_squared, marked })
     }
 }
 
@@ -185,23 +218,24 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
         }
         let (mut stress_l, mut stress_r) =
             (D::Symmetric::<L>::splat(L::zero()), D::Symmetric::<L>::splat(L::zero()));
+        let mut jump = stress_l;
         for k in 0..D::STRESS_COUNT {
             stress_l[k] = phi_l[D::COUNT + k];
             stress_r[k] = phi_r[D::COUNT + k];
-        }
-        let (left_e, right_e) = if RECONSTRUCT {
-            (Self::corrected(self.left, self.e), Self::corrected(self.right, self.e))
-        } else {
-            (*self.e, *self.e)
-        };
-        let (mut mean_e, mut half_difference_e) = (left_e, left_e);
-        for a in 0..D::COUNT {
-            mean_e[a] = L::splat(0.5) * (left_e[a] + right_e[a]);
-            half_difference_e[a] = L::splat(0.5) * (left_e[a] - right_e[a]);
-        }
-        let mut jump = stress_r;
-        for k in 0..D::STRESS_COUNT {
             jump[k] = stress_r[k] - stress_l[k];
+        }
+        let (mut mean_e, mut half_difference_e) = (*self.e, *self.e);
+        if RECONSTRUCT {
+            let mut half_e = *self.e;
+            for a in 0..D::COUNT {
+                half_e[a] = L::splat(0.5) * self.e[a];
+            }
+            let (left_e, right_e) =
+                (Self::corrected(self.left, &half_e), Self::corrected(self.right, &half_e));
+            for a in 0..D::COUNT {
+                mean_e[a] = left_e[a] + right_e[a];
+                half_difference_e[a] = left_e[a] - right_e[a];
+            }
         }
         let impedances = Impedances::<L>::of::<D>(self.left, self.right);
         let change = impedances.change::<D>(&times::<D, L>(&jump, &mean_e), &du, self.e);
@@ -210,7 +244,7 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
             velocity[a] = phi_l[a] + change.total[a];
         }
         let mut traction = impedances.traction::<D>(&times::<D, L>(&stress_l, &mean_e), &change, self.e);
-        if matches!(pass.surface, SurfaceTreatment::SpectralCap { .. }) {
+        if RECONSTRUCT && matches!(pass.surface, SurfaceTreatment::SpectralCap { .. }) {
             let weights = impedances.weights();
             let adjoint = self.adjoint(&stress_l, &stress_r, &half_difference_e, weights);
             for a in 0..D::COUNT {
@@ -242,12 +276,12 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
     ) -> D::Axes<L> {
         let mut weighted = *stress_l;
         for k in 0..D::STRESS_COUNT {
-            weighted[k] = w_l * stress_l[k] - w_r * stress_r[k];
+            weighted[k] = w_l.mul_add(stress_l[k], -(w_r * stress_r[k]));
         }
         let mut torque = D::Spin::<L>::splat(L::zero());
         for c in 0..D::SPIN_COUNT {
             let at = Sides::torque::<D>() + c;
-            torque[c] = w_l * self.left[at] + w_r * self.right[at];
+            torque[c] = w_l.mul_add(self.left[at], w_r * self.right[at]);
         }
         let turn = cross::<D, L>(&torque, self.e);
         let mut adjoint = times::<D, L>(&weighted, half_difference_e);
@@ -275,17 +309,14 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
     #[inline(always)]
     fn limited<M: SlopeLimiter>(&self, phi_l: &mut D::Fields<L>, phi_r: &mut D::Fields<L>) {
         for f in 0..D::COUNT + D::STRESS_COUNT {
-            let difference = phi_r[f] - phi_l[f];
             let first = Sides::slopes::<D>() + f * D::COUNT;
-            let mut along_l = self.left[first] * self.dx[0];
-            let mut along_r = self.right[first] * self.dx[0];
-            for a in 1..D::COUNT {
+            let mut along_l = L::splat(LEAST_GRADIENT);
+            let mut along_r = along_l;
+            for a in 0..D::COUNT {
                 along_l = self.left[first + a].mul_add(self.dx[a], along_l);
                 along_r = self.right[first + a].mul_add(self.dx[a], along_r);
             }
-            let (half_l, half_r) = M::half_of_both(difference, along_l, along_r);
-            phi_l[f] += half_l;
-            phi_r[f] = phi_r[f] - half_r;
+            (phi_l[f], phi_r[f]) = M::sides(phi_l[f], phi_r[f], along_l, along_r);
         }
     }
 }
@@ -321,14 +352,17 @@ impl<L: Lanes> Impedances<L> {
         [self.right[0] * self.inverse_sum[0], self.left[0] * self.inverse_sum[0]]
     }
 
+    /// A = (Δt + z_r ΔU)/(z_l + z_r), with the transverse impedances, and what the longitudinal ones change along R.
     #[inline(always)]
     fn change<D: SolidDimension>(&self, dt: &D::Axes<L>, du: &D::Axes<L>, e: &D::Axes<L>) -> Change<D, L> {
         let (dt_r, du_r) = (dot::<D, L>(dt, e), dot::<D, L>(du, e));
-        let along = velocity_change(dt_r, du_r, self.right[0], self.inverse_sum[0]);
+        let along = self.right[0].mul_add(du_r, dt_r) * self.inverse_sum[0];
+        let as_transverse = self.right[1].mul_add(du_r, dt_r) * self.inverse_sum[1];
+        let rest = along - as_transverse;
         let mut total = *du;
         for a in 0..D::COUNT {
-            let (dt_t, du_t) = (dt[a] - dt_r * e[a], du[a] - du_r * e[a]);
-            total[a] = along * e[a] + velocity_change(dt_t, du_t, self.right[1], self.inverse_sum[1]);
+            let push = self.right[1].mul_add(du[a], dt[a]);
+            total[a] = push.mul_add(self.inverse_sum[1], rest * e[a]);
         }
         Change { along, total }
     }
@@ -344,7 +378,7 @@ impl<L: Lanes> Impedances<L> {
         let extra = (self.left[0] - self.left[1]) * change.along;
         let mut traction = *left;
         for a in 0..D::COUNT {
-            traction[a] += self.left[1].mul_add(change.total[a], extra * e[a]);
+            traction[a] = self.left[1].mul_add(change.total[a], extra.mul_add(e[a], left[a]));
         }
         traction
     }

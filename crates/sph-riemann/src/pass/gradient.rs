@@ -9,12 +9,12 @@
 //! c_i       = (tr L I - L)⁻¹ ε_bcd (K L σ)_db                   torque of the capped part of the stress
 //! ```
 //!
-//! Reads the records of the first pass, writes those of the second and the rows K, L, half-step change, λ_min.
+//! Reads the records of the first pass, writes those of the second and the rows L and λ_min.
 
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
 
-use super::{Pass, Tile, load_line, own_indices, store_records};
+use super::{Pass, load_line, own_indices, store_records};
 use crate::dimension::{SolidDimension, dual, spin_matrix, symmetric, times};
 use crate::record::{Row, Sides, State};
 use crate::scheme::SurfaceTreatment;
@@ -22,9 +22,16 @@ use crate::scheme::SurfaceTreatment;
 /// The pass over one tile.
 pub(super) struct GradientTile<'a, 'b, D: SolidDimension> {
     pub pass: &'a Pass<'b, D>,
-    pub tile: Tile<'a>,
+    pub index: usize,
     pub flags: Option<&'a [f64]>,
+    /// Records of the second pass of the tile's particles, to be written.
+    pub sides: &'a mut [Line],
+    /// Rows of the tile's blocks.
+    pub rows: &'a mut [Line],
 }
+
+/// Below this eigenvalue of L the half step is centred on the true acceleration.
+const CENTERING_EIGENVALUE: f64 = 0.75;
 
 /// Sums over the neighbours of eight particles.
 struct Sums<D: SolidDimension, L: Lanes> {
@@ -37,14 +44,14 @@ struct Sums<D: SolidDimension, L: Lanes> {
 impl<D: SolidDimension> LaneKernel for GradientTile<'_, '_, D> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { pass, tile, flags } = self;
-        let lists = pass.tile_lists(tile.index);
-        let first_block = tile.index * sph_core::neighbors::TILE_BLOCKS;
-        let rows_of = tile.rows.chunks_exact_mut(Row::count::<D>());
-        let sides_of = tile.sides.chunks_exact_mut(LANES * D::SIDES_LINES);
+        let Self { pass, index, flags, sides, rows } = self;
+        let lists = &pass.lists.tiles()[index];
+        let first_block = index * sph_core::neighbors::TILE_BLOCKS;
+        let rows_of = rows.chunks_exact_mut(Row::count::<D>());
+        let sides_of = sides.chunks_exact_mut(LANES * D::SIDES_LINES);
         for (b, (rows, sides)) in rows_of.zip(sides_of).enumerate() {
             let indices = own_indices(first_block + b);
-            let slots = &lists.slots[lists.start[b] as usize..lists.start[b + 1] as usize];
+            let slots = lists.block(b);
             let own = load_state::<D, L>(pass, &indices);
             let sums = sum_over_neighbors::<D, L>(pass, &indices, &own, slots);
             let rule = flags.map(|flags| L::gather(flags, &indices));
@@ -116,7 +123,7 @@ fn finish<D: SolidDimension, L: Lanes>(
     own: &D::StateRecord<L>,
     sums: Sums<D, L>,
     rule: Option<L>,
-    rows: &mut [sph_core::lanes::Line],
+    rows: &mut [Line],
 ) -> D::SidesRecord<L> {
     let cap = if let SurfaceTreatment::SpectralCap { cap } = pass.surface { cap } else { 1e9 };
     let (mut correction, least) = D::capped_inverse(sums.matrix, cap);
@@ -144,11 +151,7 @@ fn finish<D: SolidDimension, L: Lanes>(
         D::Spin::<L>::splat(L::zero())
     };
     least.store(&mut rows[Row::LEAST_EIGENVALUE].0);
-    for a in 0..D::COUNT {
-        (half[a] - own[State::fields::<D>() + a]).store(&mut rows[Row::half_step::<D>() + a].0);
-    }
     for k in 0..D::STRESS_COUNT {
-        correction[k].store(&mut rows[Row::correction::<D>() + k].0);
         sums.matrix[k].store(&mut rows[Row::gradient_matrix::<D>() + k].0);
     }
     let mut record = D::SidesRecord::<L>::splat(L::zero());
@@ -162,7 +165,12 @@ fn finish<D: SolidDimension, L: Lanes>(
     for a in 0..D::COUNT {
         record[a] = step.mul_add(own[State::fields::<D>() + a], own[a]);
     }
-    record[State::volume::<D>()] = growth * own[State::volume::<D>()];
+    let volume = growth * own[State::volume::<D>()];
+    record[Sides::volume::<D>()] = volume;
+    if capped && pass.half_step != 0.0 {
+        let marked = L::splat(0.5).select_less(L::load(&rows[Row::FREE].0), -volume, volume);
+        record[Sides::volume::<D>()] = least.select_less(L::splat(CENTERING_EIGENVALUE), marked, volume);
+    }
     (growth * L::load(&rows[Row::INVERSE_DENSITY].0)).store(&mut rows[Row::INVERSE_DENSITY].0);
     record[Sides::longitudinal::<D>()] = L::load(&rows[Row::LONGITUDINAL].0);
     record[Sides::transverse::<D>()] = L::load(&rows[Row::TRANSVERSE].0);
@@ -217,7 +225,7 @@ fn half_step<D: SolidDimension, L: Lanes>(
     half_step: f64,
     own: &D::StateRecord<L>,
     slopes: &D::Fields<D::Axes<L>>,
-    rows: &[sph_core::lanes::Line],
+    rows: &[Line],
 ) -> D::Fields<L> {
     let first = State::fields::<D>();
     let mut half = D::Fields::<L>::splat(L::zero());

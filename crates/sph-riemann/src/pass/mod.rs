@@ -8,32 +8,31 @@ mod closure;
 mod contact;
 mod gradient;
 mod smoothing;
+mod sums;
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
 use sph_core::lanes::{InstructionSet, LANES, Lanes, Line, dispatch_with};
-use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS, TileLists};
+use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
 use crate::dimension::SolidDimension;
 use crate::limiter::Limiter;
 use crate::record::Row;
 use crate::scheme::SurfaceTreatment;
-pub use centering::{CenteredPairs, find_pairs};
-pub use closure::ClosureStage;
+pub use centering::Deltas;
 pub use smoothing::Smoothing;
+pub use sums::{TilePairs, collect};
 
-/// A pass and all that it reads.
+/// What all passes read.
 #[derive(Clone, Copy)]
 pub struct Pass<'a, D: SolidDimension> {
-    /// Which pass.
-    pub kind: PassKind<'a>,
     /// The pairs.
     pub lists: &'a NeighborLists<D>,
     /// Kernel and smoothing lengths.
     pub smoothing: Smoothing<'a>,
     /// What is done at free surfaces.
     pub surface: SurfaceTreatment,
-    /// Records that are read: of the first pass for gradients, of the second for the others.
+    /// Records that are read: of the first pass for gradients, of the second for contacts, of time-centring for it.
     pub records: &'a [Line],
     /// Half the time step [s], zero in schemes without a half step.
     pub half_step: f64,
@@ -41,89 +40,112 @@ pub struct Pass<'a, D: SolidDimension> {
     pub instructions: InstructionSet,
 }
 
-/// The passes.
-#[derive(Clone, Copy)]
-pub enum PassKind<'a> {
-    /// L, corrected gradients, half step; writes the records of the second pass. With 1 where a rule puts I for L⁻¹.
-    Gradient(Option<&'a [f64]>),
-    /// Contact of each pair with reconstruction; writes forces, power and velocity gradients.
-    Contact(Limiter),
-    /// Contact of each pair without reconstruction and correction.
-    PlainContact,
-    /// Corrects power and velocity gradients for the true acceleration, from δ by axis, over the listed pairs.
-    Centering(Limiter, &'a [Vec<f64>], &'a [CenteredPairs]),
-    /// A stage of the closure of faces; see [`Pass::close_faces`].
-    Closure(ClosureStage<'a>),
+/// A pass over one tile, with what it writes.
+pub struct Tile<'a> {
+    index: usize,
+    work: Work<'a>,
 }
 
-/// What a pass writes in one tile.
-pub struct Tile<'a> {
-    /// Number of the tile.
-    pub index: usize,
-    /// Records of the second pass of the tile's particles; empty unless the pass writes them.
-    pub sides: &'a mut [Line],
-    /// Rows of the tile's blocks.
-    pub rows: &'a mut [Line],
+enum Work<'a> {
+    Gradients { flags: Option<&'a [f64]>, sides: &'a mut [Line], rows: &'a mut [Line] },
+    Contacts { limiter: Option<Limiter>, pairs: &'a mut TilePairs, buffer: &'a mut [Line] },
+    Centering { pairs: &'a TilePairs, buffer: &'a mut [Line] },
+    Closure { stage: closure::Stage<'a>, rows: &'a [Line], output: &'a mut [Line] },
 }
 
 impl<D: SolidDimension> Pass<'_, D> {
-    /// Runs the pass over all tiles. `sides` holds the records that the pass writes, or is empty.
+    /// The first pass: L, corrected gradients, half step. Writes the records of the second pass, and rows. `flags` has 1
+    /// where a rule puts I for L⁻¹.
     ///
     /// # Panics
     /// If there are fewer records than the lists name: the pair loops read them unchecked.
-    pub fn run(&self, sides: &mut [Line], rows: &mut [Line]) {
-        let needed = self.lists.n_records() * self.stride();
-        assert!(self.records.len() >= needed, "{} lines of records, {needed} needed", self.records.len());
-        let row_chunk = TILE_BLOCKS * Row::count::<D>();
-        let tiles = rows.par_chunks_mut(row_chunk).enumerate();
-        if sides.is_empty() {
-            tiles.for_each(|(index, rows)| D::run(self, Tile { index, sides: &mut [], rows }));
-        } else {
-            let own = &mut sides[..self.lists.n_padded() * D::SIDES_LINES];
-            tiles
-                .zip(own.par_chunks_mut(TILE * D::SIDES_LINES))
-                .for_each(|((index, rows), sides)| D::run(self, Tile { index, sides, rows }));
-        }
+    pub fn gradients(&self, flags: Option<&[f64]>, sides: &mut [Line], rows: &mut [Line]) {
+        self.check_records(D::STATE_LINES);
+        let own = &mut sides[..self.lists.n_padded() * D::SIDES_LINES];
+        let rows = rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>());
+        rows.zip(own.par_chunks_mut(TILE * D::SIDES_LINES)).enumerate().for_each(|(index, (rows, sides))| {
+            D::run(self, Tile { index, work: Work::Gradients { flags, sides, rows } });
+        });
     }
 
-    /// Lines of a record that the pass reads.
-    fn stride(&self) -> usize {
-        match self.kind {
-            PassKind::Gradient(_) => D::STATE_LINES,
-            PassKind::Closure(ClosureStage::Sweep) => D::FACE_LINES,
-            PassKind::Contact(_)
-            | PassKind::PlainContact
-            | PassKind::Centering(..)
-            | PassKind::Closure(ClosureStage::Gaps | ClosureStage::Forces(_)) => D::SIDES_LINES,
-        }
+    /// The second pass: the contact of each pair, with reconstruction if there is a limiter. Writes the sums of each
+    /// particle, without what [`collect`] adds from other tiles, and what the pairs of each tile leave behind.
+    ///
+    /// # Panics
+    /// As [`Pass::gradients`].
+    pub fn contacts(&self, limiter: Option<Limiter>, sums: &mut [Line], pairs: &mut [TilePairs]) {
+        self.check_records(D::SIDES_LINES);
+        self.run_with_buffers(sums, pairs, |index, pairs, buffer, own| {
+            D::run(self, Tile { index, work: Work::Contacts { limiter, pairs, buffer } });
+            own.copy_from_slice(&buffer[..own.len()]);
+            true
+        });
+    }
+
+    /// Time-centring of the pairs that the contact pass has marked: adds to the sums.
+    ///
+    /// # Panics
+    /// As [`Pass::gradients`].
+    pub fn centering(&self, sums: &mut [Line], pairs: &mut [TilePairs]) {
+        self.check_records(D::STATE_LINES);
+        self.run_with_buffers(sums, pairs, |index, pairs, buffer, own| {
+            if pairs.has_marked() {
+                D::run(self, Tile { index, work: Work::Centering { pairs, buffer } });
+                let records = own.chunks_exact_mut(D::SUM_LINES).zip(buffer.chunks_exact(D::SUM_LINES));
+                records.for_each(|(own, sums)| sums::add::<D>(own, sums));
+            }
+            pairs.has_marked()
+        });
+    }
+
+    /// Runs `work` on each tile with a zeroed buffer of the size that its lists ask for and the tile's part of the sums,
+    /// and keeps the foreign sums, if there are any.
+    fn run_with_buffers(
+        &self,
+        sums: &mut [Line],
+        pairs: &mut [TilePairs],
+        work: impl Fn(usize, &mut TilePairs, &mut [Line], &mut [Line]) -> bool + Sync,
+    ) {
+        assert_eq!(sums.len(), self.lists.n_padded() * D::SUM_LINES);
+        let tiles = sums.par_chunks_mut(TILE * D::SUM_LINES).zip(pairs.par_iter_mut()).enumerate();
+        tiles.for_each(|(index, (own, pairs))| {
+            sums::with_buffer(self.lists.tiles()[index].n_targets() * D::SUM_LINES, |buffer| {
+                let any = work(index, pairs, buffer, own);
+                pairs.set_foreign(if any { &buffer[own.len()..] } else { &[] });
+            });
+        });
+    }
+
+    fn check_records(&self, stride: usize) {
+        let needed = self.lists.n_records() * stride;
+        assert!(self.records.len() >= needed, "{} lines of records, {needed} needed", self.records.len());
     }
 
     /// Runs one tile with the widest lanes of this machine.
     pub(crate) fn dispatch(&self, tile: Tile<'_>) {
-        let set = self.instructions;
-        match self.kind {
-            PassKind::Gradient(flags) => {
-                dispatch_with(set, gradient::GradientTile { pass: self, tile, flags })
+        let (set, index) = (self.instructions, tile.index);
+        match tile.work {
+            Work::Gradients { flags, sides, rows } => {
+                dispatch_with(set, gradient::GradientTile { pass: self, index, flags, sides, rows })
             }
-            PassKind::PlainContact => {
+            Work::Contacts { limiter: Some(limiter), pairs, buffer } => dispatch_with(
+                set,
+                contact::ContactTile::<D, true> { pass: self, index, limiter, pairs, buffer },
+            ),
+            Work::Contacts { limiter: None, pairs, buffer } => {
                 let limiter = Limiter::default(); // Not asked for.
-                dispatch_with(set, contact::ContactTile::<D, false> { pass: self, tile, limiter });
+                dispatch_with(
+                    set,
+                    contact::ContactTile::<D, false> { pass: self, index, limiter, pairs, buffer },
+                );
             }
-            PassKind::Contact(limiter) => {
-                dispatch_with(set, contact::ContactTile::<D, true> { pass: self, tile, limiter });
+            Work::Centering { pairs, buffer } => {
+                dispatch_with(set, centering::CenteringTile { pass: self, index, pairs, buffer })
             }
-            PassKind::Centering(limiter, delta, pairs) => {
-                let pairs = &pairs[tile.index];
-                dispatch_with(set, centering::CenteringTile { pass: self, tile, limiter, delta, pairs });
-            }
-            PassKind::Closure(stage) => {
-                dispatch_with(set, closure::ClosureTile { pass: self, tile, stage });
+            Work::Closure { stage, rows, output } => {
+                dispatch_with(set, closure::ClosureTile { pass: self, index, stage, rows, output })
             }
         }
-    }
-
-    fn tile_lists(&self, tile: usize) -> &TileLists {
-        &self.lists.tiles[tile]
     }
 }
 

@@ -41,11 +41,6 @@ impl<'a> Smoothing<'a> {
         self.kernel.support()
     }
 
-    /// Radius of the support [m], where all particles have one size; larger by a rounding error.
-    pub(super) fn uniform_reach(&self) -> Option<f64> {
-        self.uniform.map(|scales| self.support() / scales.inverse_h * (1.0 + 1e-12))
-    }
-
     /// Sizes of eight particles, where they are needed.
     #[inline(always)]
     pub(super) fn own<L: Lanes>(&self, indices: &[u32; LANES]) -> L {

@@ -1,0 +1,228 @@
+//! The stages of a step, and the arrays that they hand on to each other.
+
+use rayon::prelude::*;
+use sph_core::lanes::{LANES, Line};
+use sph_core::neighbors::cell_grid::sort_particles;
+use sph_core::neighbors::{DisplacementRange, NeighborLists, Reach, TILE};
+
+use crate::dimension::SolidDimension;
+use crate::error::StepError;
+use crate::pass::{Deltas, Pass, Smoothing, TilePairs, collect};
+use crate::record::Row;
+use crate::scheme::{FaceClosure, SurfaceTreatment};
+use crate::simulation::{Simulation, StepReport};
+use crate::time_step::{TimeStepReason, courant_step, signal_speed};
+use crate::update::{Outcome, StepEnd, TileReport, first_broken, update};
+use crate::{prepare, surface, volume};
+
+/// Arrays that live as long as the neighbour lists.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    /// Records of the first pass; then, those of time-centring.
+    state: Vec<Line>,
+    /// Records of the second pass.
+    sides: Vec<Line>,
+    rows: Vec<Line>,
+    /// What pairs add up to.
+    sums: Vec<Line>,
+    /// What the pairs of each tile leave behind.
+    pairs: Vec<TilePairs>,
+    size: Vec<f64>,
+    rule: Vec<f64>,
+    /// Face records, twice, where faces are closed.
+    faces: [Vec<Line>; 2],
+    reports: Vec<TileReport>,
+    steps: Vec<(f64, u32)>,
+    ranges: Vec<DisplacementRange>,
+}
+
+impl Scratch {
+    /// Bytes in use.
+    pub(crate) fn bytes(&self) -> usize {
+        let faces: usize = self.faces.iter().map(Vec::len).sum();
+        let lines = self.state.len() + self.sides.len() + self.rows.len() + self.sums.len() + faces;
+        let pairs: usize = self.pairs.iter().map(TilePairs::bytes).sum();
+        lines * size_of::<Line>() + pairs + (self.size.len() + self.rule.len()) * 8
+    }
+}
+
+impl<D: SolidDimension> Simulation<D> {
+    /// Sorts the particles in cell order and finds their neighbours.
+    pub(crate) fn rebuild_lists(&mut self) {
+        let reach = self.reach();
+        let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
+        sort_particles(&mut self.particles, &self.domain, 2.0 * reach.factor * largest + reach.skin);
+        let positions = self.particles.position.clone();
+        self.find_neighbors(&positions);
+        self.stage_times.rebuilds += 1;
+    }
+
+    fn reach(&self) -> Reach {
+        let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
+        Reach {
+            factor: self.settings.kernel.support() * self.settings.smoothing,
+            skin: self.settings.skin * largest,
+        }
+    }
+
+    /// Lists for the particles at the given positions, and scratch of their size.
+    pub(crate) fn find_neighbors(&mut self, positions: &D::AxisColumns) {
+        self.lists = NeighborLists::build(positions, &self.particles.size, &self.domain, self.reach());
+        self.lists_valid = true;
+        let (records, padded) = (self.lists.n_records(), self.lists.n_padded());
+        let tiles = self.lists.tiles().len();
+        let s = &mut self.scratch;
+        s.state.resize(records * D::STATE_LINES, Line::default());
+        s.sides.resize(records * D::SIDES_LINES, Line::default());
+        s.rows.resize(padded / LANES * Row::count::<D>(), Line::default());
+        s.sums.resize(padded * D::SUM_LINES, Line::default());
+        s.pairs.resize(tiles, TilePairs::default());
+        s.size.clear();
+        s.size.extend_from_slice(&self.particles.size);
+        s.size.resize(padded, self.particles.size.first().copied().unwrap_or(1.0));
+        s.size.extend(self.lists.halo().owner.iter().map(|&o| self.particles.size[o as usize]));
+        s.reports.resize(tiles, TileReport::default());
+        s.steps.resize(tiles, (0.0, 0));
+    }
+
+    pub(crate) fn measure_volumes(&mut self) {
+        if let Some(settings) = self.settings.volume_consistency {
+            volume::measure(&mut self.particles, &self.domain, &settings, self.instructions);
+        }
+    }
+
+    /// Equations of state, and the records that the first pass reads.
+    pub(crate) fn prepare(&mut self) {
+        let s = &mut self.scratch;
+        prepare::prepare(&self.particles, &self.materials, &mut s.state, &mut s.rows);
+        self.lists.halo().refresh(&mut s.state, D::STATE_LINES, self.lists.n_padded());
+    }
+
+    pub(crate) fn choose_time_step(&mut self, limit: f64) -> Result<(f64, TimeStepReason), StepError> {
+        let s = &mut self.scratch;
+        let (step, reason) = courant_step(&self.particles, &s.rows, self.settings.courant, &mut s.steps);
+        let (step, reason) = if step > limit { (limit, TimeStepReason::Limit) } else { (step, reason) };
+        if !(step > 0.0 && step.is_finite()) || self.time + step == self.time {
+            let TimeStepReason::Courant { particle, .. } = reason else { return Ok((step, reason)) };
+            return Err(StepError::TimeStep {
+                time_step: step,
+                time: self.time,
+                particle,
+                signal_speed: signal_speed(reason),
+            });
+        }
+        Ok((step, reason))
+    }
+
+    /// A pass that reads the given records.
+    fn pass<'a>(&'a self, records: &'a [Line], surface: SurfaceTreatment, half_step: f64) -> Pass<'a, D> {
+        let settings = &self.settings;
+        let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, &self.scratch.size);
+        let instructions = self.instructions;
+        Pass { lists: &self.lists, smoothing, surface, records, half_step, instructions }
+    }
+
+    /// The records that the contact pass reads: sides half a step later with their slopes, or the state as it is.
+    pub(crate) fn find_sides(&mut self, time_step: f64) {
+        let padded = self.lists.n_padded();
+        let mut sides = std::mem::take(&mut self.scratch.sides);
+        let mut rows = std::mem::take(&mut self.scratch.rows);
+        if self.settings.scheme.reconstructs() {
+            let s = &mut self.scratch;
+            let by_rule = surface::marks(&self.lists, &self.settings, &s.state, &s.size, &mut s.rule);
+            let half_step = if self.settings.scheme.is_time_centered() { 0.5 * time_step } else { 0.0 };
+            let s = &self.scratch;
+            self.pass(&s.state, self.settings.surface, half_step).gradients(
+                by_rule.then_some(s.rule.as_slice()),
+                &mut sides,
+                &mut rows,
+            );
+        } else {
+            let own = &mut sides[..padded * D::SIDES_LINES];
+            prepare::piecewise_constant_sides::<D>(&self.scratch.state, &rows, own);
+        }
+        self.lists.halo().refresh(&mut sides, D::SIDES_LINES, padded);
+        (self.scratch.sides, self.scratch.rows) = (sides, rows);
+    }
+
+    /// Forces, powers and raw velocity gradients, without what tiles have for each other.
+    pub(crate) fn solve_contacts(&mut self) {
+        let reconstructs = self.settings.scheme.reconstructs();
+        let surface = if reconstructs { self.settings.surface } else { SurfaceTreatment::None };
+        let limiter = reconstructs.then_some(self.settings.limiter);
+        let mut sums = std::mem::take(&mut self.scratch.sums);
+        let mut pairs = std::mem::take(&mut self.scratch.pairs);
+        let mut faces = std::mem::take(&mut self.scratch.faces);
+        let pass = self.pass(&self.scratch.sides, surface, 0.0);
+        pass.contacts(limiter, &mut sums, &mut pairs);
+        if let Some(FaceClosure { sweeps }) = self.settings.face_closure {
+            pass.close_faces(sweeps, &mut faces, &self.scratch.rows, &mut sums);
+        }
+        (self.scratch.sums, self.scratch.pairs, self.scratch.faces) = (sums, pairs, faces);
+    }
+
+    /// Brings the sums of all tiles together; the half step of the velocity follows the true acceleration near free
+    /// surfaces.
+    pub(crate) fn center_in_time(&mut self, time_step: f64) {
+        let s = &mut self.scratch;
+        let deltas = Deltas {
+            lists: &self.lists,
+            pairs: &s.pairs,
+            sides: &s.sides,
+            velocity: &self.particles.velocity,
+            mass: &self.particles.mass,
+            half_step: 0.5 * time_step,
+        };
+        if !deltas.fill(&mut s.sums, &mut s.state) {
+            return;
+        }
+        self.lists.halo().refresh(&mut s.state, D::STATE_LINES, self.lists.n_padded());
+        let mut sums = std::mem::take(&mut s.sums);
+        let mut pairs = std::mem::take(&mut s.pairs);
+        self.pass(&self.scratch.state, self.settings.surface, 0.0).centering(&mut sums, &mut pairs);
+        let tiles = sums.par_chunks_mut(TILE * D::SUM_LINES).enumerate();
+        tiles.for_each(|(t, own)| collect(&self.lists, &pairs, t, own));
+        (self.scratch.sums, self.scratch.pairs) = (sums, pairs);
+    }
+
+    pub(crate) fn update(&mut self, time_step: f64) -> TileReport {
+        let s = &mut self.scratch;
+        let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &s.sums };
+        update(&mut self.particles, &self.materials, &self.settings, outcome, time_step, &mut s.reports);
+        let mut sum = TileReport::default();
+        for report in &s.reports {
+            (0..3).for_each(|a| sum.input.impulse[a] += report.input.impulse[a]);
+            sum.input.work += report.input.work;
+            sum.relaxation_work += report.relaxation_work;
+            sum.interventions += report.interventions;
+        }
+        sum
+    }
+
+    pub(crate) fn finish(
+        &mut self,
+        report: TileReport,
+        time_step: f64,
+        reason: TimeStepReason,
+        rebuilt: bool,
+    ) -> Result<StepReport<D>, StepError> {
+        self.time += time_step;
+        self.step_count += 1;
+        self.particle_steps += self.particles.len() as u64;
+        self.relaxation_work += report.relaxation_work;
+        self.interventions += report.interventions;
+        let end = StepEnd { time: self.time, time_step, reason };
+        if let Some(error) = first_broken(&self.scratch.reports, &self.particles, end) {
+            return Err(error);
+        }
+        self.lists_valid = !self.lists.outlived(&self.particles.position, &mut self.scratch.ranges);
+        let impulse = D::vector(|a| report.input.impulse[a]);
+        Ok(StepReport {
+            time_step,
+            reason,
+            rebuilt,
+            constraint_impulse: impulse,
+            constraint_work: report.input.work,
+        })
+    }
+}

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use anyhow::{Context, Result};
 use sph_io::IoError;
+use sph_io::clock;
 use sph_io::lock::FolderLock;
 use sph_io::progress::{Mode, Progress};
 use sph_riemann::StageTimes;
@@ -17,7 +18,8 @@ use crate::microstructure::{self, Sample};
 use crate::outcome::{PointOutcome, Status};
 use crate::point::Control;
 use crate::refine;
-use crate::report::{Report, earlier, summary};
+use crate::report::html::RunFacts;
+use crate::report::{Report, earlier, machine, summary};
 use crate::restart::Keeper;
 use crate::sweep::{self, Sweep, Watch};
 
@@ -63,7 +65,7 @@ pub enum RunEnd {
 
 /// Runs all points of a case. `interrupt` is looked at after each step.
 pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
-    let started = Instant::now();
+    let (started, began) = (Instant::now(), SystemTime::now());
     let sample = microstructure::sample(&case.medium, case.material.reference_density);
     std::fs::create_dir_all(&options.folder)
         .with_context(|| format!("{}: the folder cannot be made", options.folder.display()))?;
@@ -79,6 +81,14 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     let outcomes = rounds(case, &sample, &report, options, interrupt)?;
     let finished: Vec<&PointOutcome> = outcomes.iter().collect();
     report.write_curves(case, &sample, &finished)?;
+    let facts = RunFacts {
+        command: machine::command(),
+        started: clock::unix_seconds(began),
+        seconds: started.elapsed().as_secs_f64(),
+        threads: options.threads,
+        case_text: case_text.to_owned(),
+    };
+    report.write_page(case, &sample, &finished, &facts)?;
     if !options.quiet {
         print_summary(&finished, report.folder(), started.elapsed().as_secs_f64());
     }

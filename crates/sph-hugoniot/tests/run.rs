@@ -46,9 +46,15 @@ fn the_smoke_case_runs_from_file_to_report() {
     for name in ["residual_mass", "residual_momentum", "residual_energy"] {
         assert!(value(name).abs() < 0.03, "{name} = {}", value(name));
     }
-    for file in
-        ["hugoniot.json", "case.ron", "case.json", "points/up_0300/profile.csv", "points/up_0300/history.csv"]
-    {
+    for file in [
+        "report.html",
+        "points/up_0300/monitors.csv",
+        "hugoniot.json",
+        "case.ron",
+        "case.json",
+        "points/up_0300/profile.csv",
+        "points/up_0300/history.csv",
+    ] {
         assert!(out.join(file).metadata().unwrap().len() > 100, "{file}");
     }
     for name in ["hugoniot", "hugoniot_with_solid", "profile_up_0300", "history_up_0300"] {

@@ -5,6 +5,7 @@
 
 pub mod atomic;
 pub mod checkpoint;
+pub mod clock;
 mod color;
 mod draw;
 mod error;

@@ -1,6 +1,7 @@
 //! What a run leaves in its folder.
 //!
 //! ```text
+//! report.html         everything on one page
 //! case.ron            the case file, as it was read
 //! case.json           the resolved case in SI
 //! hugoniot.csv, .json the table of all finished points
@@ -10,7 +11,10 @@
 //!
 //! The table is written anew after each finished point, atomically: whatever ends a run, what was computed is there.
 
+pub mod belief;
 pub mod earlier;
+pub mod html;
+pub mod machine;
 pub mod monitors;
 pub mod plots;
 pub mod summary;
@@ -89,6 +93,17 @@ impl Report {
         }
         self.write_figure(&plots::shock_velocities(case, sample, outcomes), "hugoniot")?;
         self.write_figure(&plots::with_solid(case, sample, outcomes), "hugoniot_with_solid")
+    }
+
+    /// Writes the page with everything on it.
+    pub fn write_page(
+        &self,
+        case: &Case,
+        sample: &Sample,
+        outcomes: &[&PointOutcome],
+        facts: &html::RunFacts,
+    ) -> Result<()> {
+        Ok(html::page(case, sample, outcomes, facts).write(self.folder.join("report.html"))?)
     }
 
     fn write_figure(&self, figure: &sph_io::plot::Figure, name: &str) -> Result<()> {

@@ -56,7 +56,7 @@ fn with_scripts(text: &str) -> String {
 }
 
 fn follows_one_letter(characters: &[char], k: usize) -> bool {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let is_word = |c: char| c.is_alphabetic() || c == '_';
     k > 0
         && characters[k - 1].is_alphabetic()
         && (k < 2 || !is_word(characters[k - 2]) || characters[k - 2] == 'Δ')
@@ -94,6 +94,7 @@ mod tests {
     #[test]
     fn marks_count_after_one_letter() {
         assert_eq!(marked("u_s(u_p)"), "u<sub>s</sub>(u<sub>p</sub>)");
+        assert_eq!(marked("½u_p^2"), "½u<sub>p</sub><sup>2</sup>");
         assert_eq!(marked("Δσ_xx"), "Δσ<sub>xx</sub>");
         assert_eq!(marked("up_0100 and rho_own"), "up_0100 and rho_own");
         assert_eq!(marked("3·10^-4, m^2"), "3·10<sup>−4</sup>, m<sup>2</sup>");

@@ -1,0 +1,249 @@
+//! Whether a point can be believed: what is asked of it, and from where on the answer is yes.
+//!
+//! The bounds are those of this program's own trials ("Reading the results" in the guide); a verdict is a hint where to
+//! look, not a proof.
+
+use sph_io::html::{Check, Verdict};
+
+use crate::config::Case;
+use crate::outcome::{PointOutcome, Status};
+
+/// Bounds of a figure of which less is better: good up to the first, to be looked at up to the second.
+type Bounds = (f64, f64);
+
+const STANDARD_ERROR: Bounds = (0.01, 0.03);
+const MASS_BALANCE: Bounds = (0.01, 0.03);
+const JUMP_RESIDUAL: Bounds = (0.01, 0.03);
+const BOOKS: Bounds = (1e-11, 1e-8);
+const PACKING_EXCESS: Bounds = (0.005, 0.02);
+const RELAXATION: Bounds = (0.15, 0.5);
+const COLDEST: Bounds = (0.5, 2.0);
+const FAILED: Bounds = (0.02, 0.1);
+/// Particles across a pore: good from the first on, to be looked at from the second on.
+const PORE: Bounds = (8.0, 4.0);
+
+/// Names of the checks, in the order of [`answers`].
+pub const NAMES: [&str; 9] = [
+    "settled",
+    "scatter",
+    "mass balance",
+    "jump conditions",
+    "books",
+    "packing",
+    "volume work",
+    "energies",
+    "pores",
+];
+
+/// An answer, and how bad it is.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The answer.
+    pub check: Check,
+    /// Larger is worse: to tell the worst of several points.
+    pub severity: f64,
+}
+
+fn answer(verdict: Verdict, severity: f64, name: &str, value: String, meaning: impl Into<String>) -> Answer {
+    Answer { check: Check::new(verdict, name, value, meaning), severity }
+}
+
+fn judged(value: f64, (good, fair): Bounds) -> Verdict {
+    match value {
+        v if v.is_nan() => Verdict::Unknown,
+        v if v <= good => Verdict::Good,
+        v if v <= fair => Verdict::Caution,
+        _ => Verdict::Bad,
+    }
+}
+
+fn percent(value: f64) -> String {
+    if value.is_nan() { "not measured".into() } else { format!("{:.2} %", 100.0 * value) }
+}
+
+/// What is asked of a point, in the order of [`NAMES`].
+pub fn answers(case: &Case, outcome: &PointOutcome) -> Vec<Answer> {
+    vec![
+        settled(outcome),
+        scatter(outcome),
+        mass_balance(outcome),
+        jump_conditions(outcome),
+        books(outcome),
+        packing(outcome),
+        volume_work(outcome),
+        energies(outcome),
+        pores(case),
+    ]
+}
+
+/// The answers without their severity.
+pub fn checks(case: &Case, outcome: &PointOutcome) -> Vec<Check> {
+    answers(case, outcome).into_iter().map(|answer| answer.check).collect()
+}
+
+/// The worst of all checks of a point.
+pub fn verdict(case: &Case, outcome: &PointOutcome) -> Verdict {
+    Verdict::worst(checks(case, outcome).iter().map(|check| check.verdict))
+}
+
+fn settled(outcome: &PointOutcome) -> Answer {
+    let (verdict, meaning) = match &outcome.status {
+        Status::Settled => (Verdict::Good, "Successive blocks of cells gave the same u_s.".to_owned()),
+        Status::NotSettled => (
+            Verdict::Caution,
+            "`max_fed_cells` came before successive blocks agreed: allow more cells, and look at the history.".into(),
+        ),
+        Status::Interrupted => {
+            (Verdict::Caution, "Stopped on the way: go on with `--resume`. What is shown is not final.".into())
+        }
+        Status::Failed(reason) => (Verdict::Bad, reason.clone()),
+    };
+    let value = if outcome.has_failed() { "failed".to_owned() } else { outcome.status.to_string() };
+    answer(verdict, f64::from(verdict as u8), "Settled", value, meaning)
+}
+
+fn scatter(outcome: &PointOutcome) -> Answer {
+    let share = outcome.standard_error / outcome.shock_velocity;
+    answer(
+        judged(share, STANDARD_ERROR),
+        share,
+        "Scatter of u_s",
+        percent(share),
+        format!(
+            "Standard error over u_s, from {} cells. Slow settling is not in it: look at the history.",
+            outcome.averaged_cells
+        ),
+    )
+}
+
+fn mass_balance(outcome: &PointOutcome) -> Answer {
+    let share = (outcome.mass_balance_velocity / outcome.shock_velocity - 1.0).abs();
+    answer(
+        judged(share, MASS_BALANCE),
+        share,
+        "Front against mass balance",
+        percent(share),
+        "u_s from the front's way against u_s from the mass that piles up behind it: two readings that know nothing of \
+         each other.",
+    )
+}
+
+fn jump_conditions(outcome: &PointOutcome) -> Answer {
+    let residuals = outcome.residuals.map(|r| [r.mass, r.momentum, r.energy]);
+    let worst = residuals.map_or(f64::NAN, |r| r.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+    let value = residuals.map_or("not measured".to_owned(), |r| {
+        let [mass, momentum, energy] = r.map(|x| 100.0 * x);
+        format!("mass {mass:.2} %, momentum {momentum:.2} %, energy {energy:.2} %")
+    });
+    answer(
+        judged(worst, JUMP_RESIDUAL),
+        worst,
+        "Jump conditions",
+        value,
+        "What the states on both sides miss the jump conditions by at this u_s. A large miss: the window is too short, or \
+         the front is not steady.",
+    )
+}
+
+fn books(outcome: &PointOutcome) -> Answer {
+    let gap = outcome
+        .worst()
+        .map_or(outcome.ledger_residual, |w| w.momentum_gap.max(w.energy_gap).max(outcome.ledger_residual));
+    answer(
+        judged(gap, BOOKS),
+        gap,
+        "Books of mass, momentum and energy",
+        format!("gap {gap:.1e}"),
+        "What came in, went out and was put in against what is in the window; round-off, or the program is wrong.",
+    )
+}
+
+fn packing(outcome: &PointOutcome) -> Answer {
+    let ratio = outcome.states.map_or(f64::NAN, |s| s.behind.packing_density / s.behind.own_density);
+    let (verdict, value) = (judged(ratio - 1.0, PACKING_EXCESS), format!("{ratio:.4}"));
+    answer(
+        verdict,
+        ratio,
+        "Packing against own density",
+        if ratio.is_nan() { "not measured".into() } else { value },
+        "Behind the front: below 1 with open pores, 1 with shut ones; above 1 the particles are denser than they know, and \
+         u_s is too low.",
+    )
+}
+
+fn volume_work(outcome: &PointOutcome) -> Answer {
+    let share = outcome.worst().map_or(f64::NAN, |w| w.relaxation_share);
+    answer(
+        judged(share, RELAXATION),
+        share,
+        "Virtual work of volume consistency",
+        percent(share),
+        "∫|P dV| of the density that the treatment changed, over the energy that the shock put in. It falls with finer \
+         particles.",
+    )
+}
+
+fn energies(outcome: &PointOutcome) -> Answer {
+    let scale = 0.5 * outcome.effective_particle_velocity.powi(2);
+    let worst = outcome.worst();
+    let coldest = worst.map_or(f64::NAN, |w| -w.energy_least / scale);
+    let failed = worst.map_or(f64::NAN, |w| w.failed_share);
+    let value = worst.map_or("not measured".to_owned(), |w| {
+        format!(
+            "least {:.2}, largest {:.1} times the mean; {} failed in tension at most",
+            w.energy_least / scale,
+            w.energy_largest_over_mean,
+            percent(w.failed_share)
+        )
+    });
+    answer(
+        judged(coldest, COLDEST).max(judged(failed, FAILED)),
+        (coldest / COLDEST.0).max(failed / FAILED.0),
+        "Extreme particles",
+        value,
+        "Specific internal energy of single particles in units of ½u_p^2, the worst of the whole run, start-up too. Far \
+         below zero: jets that overshoot, or a tensile instability.",
+    )
+}
+
+fn pores(case: &Case) -> Answer {
+    let across = 2.0 * case.medium.radius / case.medium.particle_size;
+    let (verdict, value) = match across {
+        a if a <= 0.0 => (Verdict::Good, "no pores".to_owned()),
+        a if a >= PORE.0 => (Verdict::Good, format!("{a:.1} particles across a pore")),
+        a if a >= PORE.1 => (Verdict::Caution, format!("{a:.1} particles across a pore")),
+        a => (Verdict::Bad, format!("{a:.1} particles across a pore")),
+    };
+    answer(
+        verdict,
+        -across,
+        "Resolution of the pores",
+        value,
+        "Fewer than eight particles across a pore are for trials: run again with half the `particle_size` and compare.",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts_follow_the_bounds_and_not_a_number_is_not_judged() {
+        assert_eq!(judged(0.009, MASS_BALANCE), Verdict::Good);
+        assert_eq!(judged(0.02, MASS_BALANCE), Verdict::Caution);
+        assert_eq!(judged(0.2, MASS_BALANCE), Verdict::Bad);
+        assert_eq!(judged(f64::NAN, MASS_BALANCE), Verdict::Unknown);
+    }
+
+    #[test]
+    fn a_failed_point_is_bad_and_says_why() {
+        let text = crate::template::text("smoke").unwrap();
+        let case = crate::config::parse(text, "smoke.ron").unwrap();
+        let outcome = PointOutcome::failed(100.0, "the step fell to nothing".into());
+        let checks = checks(&case, &outcome);
+        assert_eq!(checks.len(), NAMES.len());
+        assert_eq!(verdict(&case, &outcome), Verdict::Bad);
+        assert!(checks[0].meaning.contains("fell to nothing"));
+        assert_eq!(checks[2].verdict, Verdict::Unknown);
+    }
+}

@@ -13,6 +13,7 @@
 pub mod check;
 pub mod cli;
 pub mod config;
+pub mod curve;
 pub mod estimate;
 pub mod failure;
 pub mod film;

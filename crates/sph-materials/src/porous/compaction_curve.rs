@@ -113,7 +113,7 @@ impl CompactionCurve {
     /// Distension \\( \alpha_1 \\) behind the precursor [1].
     pub fn precursor_distension(&self) -> f64 {
         let ahead = &self.precursor;
-        self.solid_density(ahead.pressure, |_| ahead.specific_internal_energy) / ahead.density
+        self.medium.solid_density(ahead.pressure, |_| ahead.specific_internal_energy) / ahead.density
     }
 
     /// Distension \\( \alpha \\) behind the main wave at a stress [Pa] within the data [1].
@@ -125,18 +125,6 @@ impl CompactionCurve {
                 1.0 + (self.precursor_distension() - 1.0) * left
             }
         }
-    }
-
-    /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that
-    /// density.
-    fn solid_density(&self, pressure: f64, energy: impl Fn(f64) -> f64) -> f64 {
-        let solid = &self.medium.solid;
-        let is_dense_enough = |density: f64| solid.pressure(density, energy(density)) >= pressure;
-        let mut high = solid.reference_density;
-        while !is_dense_enough(high) {
-            high *= 1.01;
-        }
-        turning_point(0.5 * solid.reference_density, high, is_dense_enough)
     }
 
     /// The main wave of a given stress behind [Pa].
@@ -161,7 +149,7 @@ impl CompactionCurve {
         let energy = |rho_s: f64| {
             ahead.specific_internal_energy + 0.5 * (stress + ahead.pressure) * volume_loss(rho_s)
         };
-        let rho_s = self.solid_density(stress, energy);
+        let rho_s = self.medium.solid_density(stress, energy);
         let mass_flux = ((stress - ahead.pressure) / volume_loss(rho_s)).sqrt();
         let behind = ShockState {
             density: rho_s / alpha,

@@ -68,6 +68,7 @@ use crate::error::HugoniotError;
 use crate::hugoniot::check_piston;
 use crate::jump::{Jump, ShockState};
 use crate::material::Material;
+use crate::root::turning_point;
 use crate::shock::Adiabat;
 
 /// What runs ahead of the compaction wave.
@@ -261,6 +262,26 @@ impl PorousMedium {
         };
         let wave_speed = ahead.particle_velocity + shock_velocity;
         self.slower_than_precursor(Jump { ahead, behind, wave_speed })
+    }
+
+    /// Distension \\( \alpha = \rho_s/\rho \\) of matter of a stress [Pa] and density [kg/m³] behind the compaction
+    /// wave: the solid at that stress, strengthless, and at the energy that the jump conditions give.
+    pub fn distension_behind(&self, stress: f64, density: f64) -> f64 {
+        let ahead = self.state_ahead();
+        let volume_loss = 1.0 / ahead.density - 1.0 / density;
+        let energy = ahead.specific_internal_energy + 0.5 * (stress + ahead.pressure) * volume_loss;
+        self.solid_density(stress, |_| energy) / density
+    }
+
+    /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that
+    /// density.
+    fn solid_density(&self, pressure: f64, energy: impl Fn(f64) -> f64) -> f64 {
+        let is_dense_enough = |density: f64| self.solid.pressure(density, energy(density)) >= pressure;
+        let mut high = self.solid.reference_density;
+        while !is_dense_enough(high) {
+            high *= 1.01;
+        }
+        turning_point(0.5 * self.solid.reference_density, high, is_dense_enough)
     }
 
     fn state_ahead_of(&self, piston_velocity: f64) -> Result<ShockState, HugoniotError> {

@@ -174,7 +174,7 @@ mod tests {
             0 => (-0.7 * x[i]).exp(),
             _ => -3.0 * x[i] * (-0.7 * x[i]).exp(),
         });
-        let reference = linear(&design, &vec![0.0; 20], &[0.01; 20]).unwrap();
+        let reference = linear(&design, &[0.0; 20], &[0.01; 20]).unwrap();
         for (found, wanted) in solution.covariance.iter().zip(reference.covariance.iter()) {
             assert!((found / wanted - 1.0).abs() < 1e-5, "{found} {wanted}");
         }

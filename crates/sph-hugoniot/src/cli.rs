@@ -1,6 +1,6 @@
 //! The command line of `hugoniot`: what can be typed, and which exit code follows.
 
-use std::io::IsTerminal;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,8 +10,10 @@ use clap::{Parser, Subcommand};
 
 use crate::config::resolve::PARTICLE_VELOCITIES;
 use crate::config::units::Velocity;
+use crate::report::machine;
 use crate::run::{self, Earlier, RunEnd, RunOptions};
-use crate::{check, config, restart, template};
+use crate::shell::{self, ColorChoice};
+use crate::{check, config, restart, schema, status, template};
 
 /// Everything went well.
 pub const SUCCESS: u8 = 0;
@@ -31,6 +33,8 @@ const EXAMPLES: &str = "Examples:
   hugoniot run case.ron --up 100,150         two points only
   hugoniot run case.ron --out results/a --threads 2 --quiet
   hugoniot run case.ron --resume             go on after Ctrl-C, a crash or a power cut
+  hugoniot status results/porous-copper      how far a run is, from another terminal
+  hugoniot completions bash > ~/.local/share/bash-completion/completions/hugoniot
 
 RUST_LOG=info tells of each point when start-up ends and what each block gives.
 Exit codes: 0 done, 2 bad input, 3 a point failed, 130 interrupted";
@@ -42,6 +46,9 @@ pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Colors in messages
+    #[arg(long, global = true, value_enum, default_value_t)]
+    pub color: ColorChoice,
 }
 
 /// What to do.
@@ -95,6 +102,45 @@ pub enum Command {
         /// No progress, no summary; failures are still told
         #[arg(long)]
         quiet: bool,
+        /// The summary at the end as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Show how far a run is, or how it ended
+    #[command(
+        after_help = "Examples:\n  hugoniot status results/porous-copper\n  watch -n 2 hugoniot status results/porous-copper\n  \
+                      hugoniot status results/porous-copper --json | jq .seconds_left"
+    )]
+    Status {
+        /// Folder of the results
+        folder: PathBuf,
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write the completions for a shell to standard output
+    #[command(after_help = "Examples:
+  hugoniot completions bash > ~/.local/share/bash-completion/completions/hugoniot
+  hugoniot completions zsh > \"${fpath[1]}/_hugoniot\"
+  hugoniot completions fish > ~/.config/fish/completions/hugoniot.fish")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual pages into a folder
+    #[command(after_help = "Example:\n  hugoniot man ~/.local/share/man/man1")]
+    Man {
+        /// The folder; it is made if it is not there
+        folder: PathBuf,
+    },
+    /// Write the JSON schema of what --json gives to standard output
+    #[command(
+        after_help = "Examples:\n  hugoniot schema status\n  hugoniot schema check > check.schema.json"
+    )]
+    Schema {
+        /// Which one
+        #[arg(value_enum)]
+        of: schema::Schema,
     },
 }
 
@@ -123,10 +169,12 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Runs the command; returns the exit code.
 pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
+    let color = arguments.color.is_on();
+    sph_io::progress::set_color(color);
     match arguments.command {
         Command::Init { template } => Ok(init(template.as_deref())),
-        Command::Check { case, json, threads } => check_case(&case, json, threads),
-        Command::Run { case, up, out, threads, resume, replace, keep_every, quiet } => {
+        Command::Check { case, json, threads } => check_case(&case, json, threads, color),
+        Command::Run { case, up, out, threads, resume, replace, keep_every, quiet, json } => {
             let earlier = match (resume, replace) {
                 (true, _) => Earlier::Resume,
                 (_, true) => Earlier::Replace,
@@ -134,8 +182,24 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
             };
             let threads = threads.unwrap_or_else(available_threads).clamp(1, 1024);
             let keep_every = Duration::from_secs_f64(keep_every);
-            let options = RunOptions { folder: out.unwrap_or_default(), threads, quiet, earlier, keep_every };
-            run_case(&case, up, options)
+            let folder = out.unwrap_or_default();
+            let go_on = String::new();
+            let options = RunOptions { folder, threads, quiet, json, earlier, keep_every, go_on };
+            run_case(&case, up, options, color)
+        }
+        Command::Status { folder, json } => show_status(&folder, json),
+        Command::Completions { shell } => {
+            std::io::stdout().write_all(&shell::completions(shell))?;
+            Ok(SUCCESS)
+        }
+        Command::Man { folder } => {
+            let n_pages = shell::write_manual(&folder)?;
+            println!("{n_pages} pages in {}", folder.display());
+            Ok(SUCCESS)
+        }
+        Command::Schema { of } => {
+            print!("{}", of.text());
+            Ok(SUCCESS)
         }
     }
 }
@@ -162,13 +226,29 @@ fn init(name: Option<&str>) -> u8 {
 }
 
 /// Reads a case file; its faults go to standard error.
-fn load(path: &Path) -> Option<config::Case> {
-    let color = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+fn load(path: &Path, color: bool) -> Option<config::Case> {
     config::load(path).map_err(|error| eprintln!("{}", error.render(color).trim_end())).ok()
 }
 
-fn check_case(path: &Path, json: bool, threads: Option<usize>) -> anyhow::Result<u8> {
-    let Some(case) = load(path) else { return Ok(BAD_INPUT) };
+/// Tells how far the run in a folder is.
+fn show_status(folder: &Path, json: bool) -> anyhow::Result<u8> {
+    let Some(found) = status::read(folder)? else {
+        let folder = folder.display();
+        eprintln!(
+            "error: {folder}: no run has written here; hint: the folder of results, as `hugoniot check` names it"
+        );
+        return Ok(BAD_INPUT);
+    };
+    if json {
+        println!("{}", serde_json::to_string_pretty(&found)?);
+    } else {
+        print!("{}", found.to_text());
+    }
+    Ok(SUCCESS)
+}
+
+fn check_case(path: &Path, json: bool, threads: Option<usize>, color: bool) -> anyhow::Result<u8> {
+    let Some(case) = load(path, color) else { return Ok(BAD_INPUT) };
     let check = check::Check::new(case, threads.unwrap_or_else(available_threads).max(1));
     if json {
         println!("{}", serde_json::to_string_pretty(&check)?);
@@ -178,8 +258,8 @@ fn check_case(path: &Path, json: bool, threads: Option<usize>) -> anyhow::Result
     Ok(SUCCESS)
 }
 
-fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions) -> anyhow::Result<u8> {
-    let Some(mut case) = load(path) else { return Ok(BAD_INPUT) };
+fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions, color: bool) -> anyhow::Result<u8> {
+    let Some(mut case) = load(path, color) else { return Ok(BAD_INPUT) };
     if !points.is_empty() {
         points.sort_by(f64::total_cmp);
         points.dedup();
@@ -190,8 +270,9 @@ fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions) -> anyho
         options.folder = PathBuf::from(&case.output.directory);
     }
     let interrupt = stop_on_interrupt()?;
-    let out = options.folder.display();
-    let go_on = format!("hugoniot run {} --out {out} --resume", path.display());
+    let word = |path: &Path| machine::quoted(path.to_string_lossy().into_owned());
+    let go_on = format!("hugoniot run {} --out {} --resume", word(path), word(&options.folder));
+    options.go_on.clone_from(&go_on);
     // What was kept before stands, also where a file could not be written: the way on is the same.
     let end = run::run(&case, &text, &options, &interrupt).map_err(|error| {
         error.context(format!("the run has stopped (once this is mended, go on with: {go_on})"))

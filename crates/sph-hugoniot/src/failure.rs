@@ -97,7 +97,7 @@ fn hints(error: &StepError, case: &Case) -> Vec<String> {
             hints.push(format!(
                 "its density has fallen to {percent:.0} % of the solid's, in tension: set tensile_strength, or a lower one"
             ));
-        } else if part > 1.4 {
+        } else if part > 1.4 && part.is_finite() {
             hints.push(format!(
                 "its density is {part:.1} times the solid's: is u_p within the equation of state?"
             ));

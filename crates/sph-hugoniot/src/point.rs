@@ -28,6 +28,7 @@ use crate::outcome::{PointOutcome, Status};
 use crate::restart::Keeper;
 use crate::setup;
 use crate::statistics::{mean, relative_spread};
+use crate::status::Way;
 
 /// Cells over which the place of the front is smoothed for the profiles.
 const FRONT_MEMORY: f64 = 2.0;
@@ -36,8 +37,8 @@ const FRONT_MEMORY: f64 = 2.0;
 pub trait Control: Sync {
     /// True when the point should stop where it is.
     fn interrupted(&self) -> bool;
-    /// Told now and then: cells swept so far, and how many it will be at least.
-    fn progress(&self, swept_cells: f64, expected_cells: f64);
+    /// Told now and then how far the point has come.
+    fn progress(&self, way: &Way);
 }
 
 /// Runs without being watched.
@@ -48,7 +49,7 @@ impl Control for Unwatched {
     fn interrupted(&self) -> bool {
         false
     }
-    fn progress(&self, _swept_cells: f64, _expected_cells: f64) {}
+    fn progress(&self, _way: &Way) {}
 }
 
 /// Runs one point that is kept nowhere; a failure of the method is part of the outcome.
@@ -156,10 +157,18 @@ impl<'c> Point<'c> {
             };
             let Some(observation) = observation else { continue };
             let status = self.look(&observation);
-            control.progress(observation.swept / self.sample.cell, self.expected_cells());
+            control.progress(&self.way(&observation));
             if let Some(status) = status {
                 return Ok(status);
             }
+        }
+    }
+
+    fn way(&self, now: &Observation) -> Way {
+        Way {
+            swept_cells: now.swept / self.sample.cell,
+            expected_cells: self.expected_cells(),
+            shock_velocity: self.window.shock_velocity().map_or(f64::NAN, |estimate| estimate.velocity),
         }
     }
 

@@ -19,8 +19,9 @@ use crate::outcome::{PointOutcome, Status};
 use crate::point::Control;
 use crate::refine;
 use crate::report::html::RunFacts;
-use crate::report::{Report, earlier, machine, summary};
+use crate::report::{Report, earlier, machine, monitors, summary};
 use crate::restart::Keeper;
+use crate::status::{StatusBoard, Way};
 use crate::sweep::{self, Sweep, Watch};
 
 /// How a run is made.
@@ -32,10 +33,14 @@ pub struct RunOptions {
     pub threads: usize,
     /// Without progress and summary.
     pub quiet: bool,
+    /// The summary as JSON.
+    pub json: bool,
     /// What happens to results that are there already.
     pub earlier: Earlier,
     /// Time between two states of a point on disk.
     pub keep_every: Duration,
+    /// The command that goes on with the run.
+    pub go_on: String,
 }
 
 /// What happens to results that a run finds in its folder.
@@ -63,6 +68,18 @@ pub enum RunEnd {
     Refused(String),
 }
 
+impl RunEnd {
+    /// A word for it.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::SomeFailed => "some failed",
+            Self::Interrupted => "interrupted",
+            Self::Refused(_) => "refused",
+        }
+    }
+}
+
 /// Runs all points of a case. `interrupt` is looked at after each step.
 pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
     let (started, began) = (Instant::now(), SystemTime::now());
@@ -78,7 +95,8 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         return Ok(RunEnd::Refused(refusal));
     }
     let report = Report::create(&options.folder, case, case_text)?;
-    let outcomes = rounds(case, &sample, &report, options, interrupt)?;
+    let board = StatusBoard::new(&options.folder, &case.name, &options.go_on);
+    let outcomes = rounds(case, &sample, &report, &board, options, interrupt)?;
     let finished: Vec<&PointOutcome> = outcomes.iter().collect();
     report.write_curves(case, &sample, &finished)?;
     let facts = RunFacts {
@@ -89,10 +107,15 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         case_text: case_text.to_owned(),
     };
     report.write_page(case, &sample, &finished, &facts)?;
-    if !options.quiet {
-        print_summary(&finished, report.folder(), started.elapsed().as_secs_f64());
+    let end = end_of(&finished, interrupt);
+    board.finish(end.word());
+    let seconds = started.elapsed().as_secs_f64();
+    if options.json {
+        println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
+    } else if !options.quiet {
+        print_summary(&finished, report.folder(), seconds);
     }
-    Ok(end_of(&finished, interrupt))
+    Ok(end)
 }
 
 /// Round after round until no further point is asked for; all outcomes, in the order of u_p.
@@ -100,6 +123,7 @@ fn rounds(
     case: &Case,
     sample: &Sample,
     report: &Report,
+    board: &StatusBoard,
     options: &RunOptions,
     interrupt: &AtomicBool,
 ) -> Result<Vec<PointOutcome>> {
@@ -107,7 +131,8 @@ fn rounds(
     let mut points = case.points.clone();
     while !points.is_empty() {
         let sweep = Sweep { case, sample, points: &points };
-        finished = round(sweep, finished, report, options, interrupt)?;
+        board.expect(&points);
+        finished = round(sweep, finished, report, board, options, interrupt)?;
         points = match &case.refinement {
             Some(refinement) if !interrupt.load(Ordering::Relaxed) => {
                 let known: Vec<refine::Known> = finished.iter().map(PointOutcome::known).collect();
@@ -124,6 +149,7 @@ fn round(
     sweep: Sweep<'_>,
     earlier: Vec<PointOutcome>,
     report: &Report,
+    board: &StatusBoard,
     options: &RunOptions,
     interrupt: &AtomicBool,
 ) -> Result<Vec<PointOutcome>> {
@@ -136,6 +162,7 @@ fn round(
         sweep,
         earlier: &earlier,
         report,
+        board,
         interrupt,
         keep_every: options.keep_every,
         state: Mutex::new(State {
@@ -172,9 +199,12 @@ fn print_summary(outcomes: &[&PointOutcome], folder: &Path, seconds: f64) {
     let core_seconds: f64 = outcomes.iter().map(|o| o.wall_seconds).sum();
     let rate = steps as f64 / core_seconds / 1e6;
     println!(
-        "{seconds:.1} s; {rate:.2} million particle-steps/s in a point; results in {}",
+        "{seconds:.1} s; {rate:.2} million particle-steps/s in a point; results in {}, open report.html there",
         folder.display()
     );
+    for line in monitors::interventions(outcomes) {
+        println!("bound that acted: {line}");
+    }
 }
 
 /// Keeps the state of a sweep and what is shown of it.
@@ -183,6 +213,7 @@ struct Watcher<'r> {
     /// Outcomes of earlier rounds.
     earlier: &'r [PointOutcome],
     report: &'r Report,
+    board: &'r StatusBoard,
     interrupt: &'r AtomicBool,
     keep_every: Duration,
     costs: &'r [f64],
@@ -201,13 +232,14 @@ impl Watcher<'_> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn show(&self, index: usize, part: f64, message: &str) {
+    /// Shows how far the sweep is; the time left.
+    fn show(&self, index: usize, part: f64, message: &str) -> Option<Duration> {
         let mut state = self.state();
         state.parts[index] = part.min(1.0);
         let done = state.parts.iter().zip(self.costs).map(|(part, cost)| part * cost).sum();
-        if let Some(progress) = &mut state.progress {
-            progress.update(done, message);
-        }
+        let progress = state.progress.as_mut()?;
+        progress.update(done, message);
+        progress.eta()
     }
 
     fn note(&self, line: &str) {
@@ -243,6 +275,7 @@ impl Watch for Watcher<'_> {
 
     fn finished(&self, index: usize, outcome: PointOutcome) -> Result<()> {
         self.report.write_point(self.sweep.case, &outcome)?;
+        self.board.ended(&outcome, self.sweep.sample.cell);
         let line = summary::line(&outcome);
         match outcome.status {
             Status::Failed(_) => eprintln!("{line}"),
@@ -269,9 +302,11 @@ impl Control for PointControl<'_> {
         self.watcher.interrupted()
     }
 
-    fn progress(&self, swept_cells: f64, expected_cells: f64) {
+    fn progress(&self, way: &Way) {
         let u_p = self.watcher.sweep.points[self.index];
-        let message = format!("u_p = {u_p} m/s, cell {swept_cells:.0} of {expected_cells:.0}");
-        self.watcher.show(self.index, swept_cells / expected_cells, &message);
+        let (swept, expected) = (way.swept_cells, way.expected_cells);
+        let message = format!("u_p = {u_p} m/s, cell {swept:.0} of {expected:.0}");
+        let left = self.watcher.show(self.index, swept / expected, &message);
+        self.watcher.board.progress(u_p, way, left.map(|left| left.as_secs_f64()));
     }
 }

@@ -42,6 +42,23 @@ impl FolderLock {
         Ok(Self { file, path })
     }
 
+    /// Who holds the folder, without taking it; `None` if nobody does.
+    ///
+    /// # Errors
+    /// [`IoError::File`] if the lock file cannot be read, or its file system knows no locks.
+    pub fn holder(folder: impl AsRef<Path>) -> Result<Option<String>, IoError> {
+        let path = folder.as_ref().join(FILE_NAME);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let mut file = File::open(&path).map_err(IoError::file(&path, "open the lock file"))?;
+        match file.try_lock_shared() {
+            Ok(()) => Ok(None),
+            Err(TryLockError::WouldBlock) => Ok(Some(holder(&mut file))),
+            Err(TryLockError::Error(error)) => Err(IoError::file(&path, "look at the lock")(error)),
+        }
+    }
+
     /// The lock file.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -81,7 +98,12 @@ mod tests {
         let first = FolderLock::acquire(folder.path()).unwrap();
         let message = FolderLock::acquire(folder.path()).unwrap_err().to_string();
         assert!(message.contains(&format!("in use by process {}", std::process::id())), "{message}");
+        assert_eq!(
+            FolderLock::holder(folder.path()).unwrap(),
+            Some(format!("process {}", std::process::id()))
+        );
         drop(first);
+        assert_eq!(FolderLock::holder(folder.path()).unwrap(), None);
         FolderLock::acquire(folder.path()).unwrap();
     }
 

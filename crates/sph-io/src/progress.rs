@@ -12,12 +12,23 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, Write, stderr};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 /// Least time between two plain lines.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 /// Steps of the bar.
 const RESOLUTION: u64 = 10_000;
+
+/// Whether bars are colored: by `NO_COLOR`, or as [`set_color`] says.
+static COLOR: AtomicU8 = AtomicU8::new(0);
+const ALWAYS: u8 = 1;
+const NEVER: u8 = 2;
+
+/// Says whether bars are colored from now on, whatever `NO_COLOR` says.
+pub fn set_color(is_on: bool) {
+    COLOR.store(if is_on { ALWAYS } else { NEVER }, Ordering::Relaxed);
+}
 
 /// Where progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -165,8 +176,13 @@ impl Clock {
 }
 
 fn bar(label: &str) -> ProgressBar {
-    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let color = if is_plain { "" } else { ".cyan/dim" };
+    let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let is_colored = match COLOR.load(Ordering::Relaxed) {
+        ALWAYS => true,
+        NEVER => false,
+        _ => !unwanted,
+    };
+    let color = if is_colored { ".cyan/dim" } else { "" };
     let template = format!("{{prefix}} [{{bar:30{color}}}] {{percent:>3}} %  {{msg}}");
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(Some(RESOLUTION), ProgressDrawTarget::stderr_with_hz(4));

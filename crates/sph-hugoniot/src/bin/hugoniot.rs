@@ -1,6 +1,5 @@
 //! `hugoniot`: from a case file to the shock Hugoniot u_s(u_p) of a porous solid, with uncertainty.
 
-use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -11,7 +10,7 @@ fn main() -> ExitCode {
     tracing_subscriber::fmt()
         .with_env_filter(tracing_subscriber::EnvFilter::from_default_env())
         .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
+        .with_ansi(arguments.color.is_on())
         .init();
     match cli::execute(arguments) {
         Ok(code) => ExitCode::from(code),

@@ -1,9 +1,12 @@
 //! What a run says at its end: one line a point, a short table, and where the time went.
 
+use std::path::Path;
+
 use sph_io::table::{Column, Table};
 use sph_riemann::StageTimes;
 
 use crate::outcome::{PointOutcome, Status};
+use crate::run::RunEnd;
 
 /// One line about a point.
 pub fn line(outcome: &PointOutcome) -> String {
@@ -63,6 +66,41 @@ pub fn stages(stages: &StageTimes) -> Table {
             "",
             rows.iter().map(|r| rounded(100.0 * r.2, 1)).collect::<Vec<_>>(),
         ))
+}
+
+/// The end of a run for programs: how it ended, the points, the time of the stages.
+pub fn json(end: &RunEnd, outcomes: &[&PointOutcome], folder: &Path, seconds: f64) -> serde_json::Value {
+    let finite = |value: f64| value.is_finite().then_some(value);
+    let points: Vec<serde_json::Value> = outcomes
+        .iter()
+        .map(|o| {
+            serde_json::json!({
+                "particle_velocity": o.particle_velocity,
+                "shock_velocity": finite(o.shock_velocity),
+                "standard_error": finite(o.standard_error),
+                "mass_balance_velocity": finite(o.mass_balance_velocity),
+                "status": o.status.to_string(),
+                "seconds": o.wall_seconds,
+                "particle_steps": o.particle_steps,
+            })
+        })
+        .collect();
+    let mut stages = StageTimes::default();
+    outcomes.iter().for_each(|o| stages.merge(&o.stages));
+    let stages: Vec<serde_json::Value> = stages
+        .table()
+        .iter()
+        .map(|row| serde_json::json!({"stage": row.0, "seconds": row.1, "share": row.2}))
+        .collect();
+    serde_json::json!({
+        "format": 1,
+        "end": end.word(),
+        "folder": folder,
+        "seconds": seconds,
+        "points": points,
+        "stages": stages,
+        "interventions": super::monitors::interventions(outcomes),
+    })
 }
 
 fn rounded(value: f64, digits: i32) -> f64 {

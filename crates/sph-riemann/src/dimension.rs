@@ -8,6 +8,8 @@ use sph_core::dimension::{Components, Dim2, Dim3, Dimension, Value};
 use sph_core::lanes::{Lanes, Real};
 
 use crate::pass::{Pass, Tile};
+use crate::prepare::PrepareTile;
+use crate::update::UpdateTile;
 
 /// Storage index of component (a, b) of a symmetric matrix in `count` dimensions.
 #[inline(always)]
@@ -61,6 +63,12 @@ pub trait SolidDimension: Dimension {
     /// Runs a pass over one tile with the widest lanes of the machine. Not generic, so that the pair loops are compiled
     /// in this crate and not anew in each one that uses it.
     fn run(pass: &Pass<'_, Self>, tile: Tile<'_>);
+
+    /// The same for the preparation of a tile.
+    fn prepare(tile: PrepareTile<'_, Self>);
+
+    /// The same for the update of a tile.
+    fn update(tile: UpdateTile<'_, Self>);
 }
 
 /// Component (a, b) of the velocity gradient ∂U_b/∂x_a of a rigid turn: ε_bca Ω_c.
@@ -168,6 +176,14 @@ impl SolidDimension for Dim2 {
     fn run(pass: &Pass<'_, Self>, tile: Tile<'_>) {
         pass.dispatch(tile);
     }
+
+    fn prepare(tile: PrepareTile<'_, Self>) {
+        tile.dispatch();
+    }
+
+    fn update(tile: UpdateTile<'_, Self>) {
+        tile.dispatch();
+    }
 }
 
 impl SolidDimension for Dim3 {
@@ -210,6 +226,14 @@ impl SolidDimension for Dim3 {
 
     fn run(pass: &Pass<'_, Self>, tile: Tile<'_>) {
         pass.dispatch(tile);
+    }
+
+    fn prepare(tile: PrepareTile<'_, Self>) {
+        tile.dispatch();
+    }
+
+    fn update(tile: UpdateTile<'_, Self>) {
+        tile.dispatch();
     }
 }
 

@@ -15,6 +15,7 @@
 //! | [`limiter`] | slope limiters |
 //! | [`scheme`] | what can be chosen: scheme, limiter, kernel, θ, Courant number, surfaces, volume consistency |
 //! | [`pass`] | pair loops in lanes: gradients and half step, contacts, time-centring |
+//! | [`matter`] | materials in lanes |
 //! | [`prepare`], [`update`] | equations of state before the pair loops, the state at the end of the step after them |
 //! | [`surface`], [`volume`] | printed rules at free surfaces; density kept at that of the packing |
 //! | [`time_step`], [`stage_times`], [`interventions`], [`restart`], [`error`] | what their names say |
@@ -34,6 +35,7 @@ pub mod dimension;
 pub mod error;
 pub mod interventions;
 pub mod limiter;
+pub mod matter;
 pub mod pass;
 pub mod prepare;
 pub mod record;

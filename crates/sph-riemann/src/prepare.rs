@@ -2,12 +2,14 @@
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, Line};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch_with};
 use sph_core::neighbors::{TILE, TILE_BLOCKS};
 use sph_core::particles::{Constraint, Particles};
 use sph_materials::{Damage, Material};
 
 use crate::dimension::SolidDimension;
+use crate::matter::Matter;
+use crate::pass::store_records;
 use crate::record::{Row, Sides, State};
 
 /// Pressure of particle `i` [Pa], with the failure rule.
@@ -21,28 +23,55 @@ pub fn pressure<D: SolidDimension>(particles: &Particles<D>, materials: &[Materi
 /// Fills the records of the first pass and the rows that the material gives, tile by tile.
 pub fn prepare<D: SolidDimension>(
     particles: &Particles<D>,
-    materials: &[Material],
+    matter: &Matter,
+    instructions: InstructionSet,
     state: &mut [Line],
     rows: &mut [Line],
 ) {
-    let n = particles.len();
-    let own = n.div_ceil(LANES) * LANES * D::STATE_LINES;
+    let own = particles.len().div_ceil(LANES) * LANES * D::STATE_LINES;
     let tiles = state[..own].par_chunks_mut(TILE * D::STATE_LINES);
     tiles.zip(rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>())).enumerate().for_each(
         |(t, (state, rows))| {
-            for (k, record) in state.chunks_exact_mut(D::STATE_LINES).enumerate() {
-                let rows = &mut rows[k / LANES * Row::count::<D>()..];
-                if t * TILE + k < n {
-                    particle(particles, materials, t * TILE + k, record, rows);
-                } else {
-                    fill(record, rows, k % LANES);
-                }
-            }
+            D::prepare(PrepareTile { particles, matter, instructions, first: t * TILE, state, rows });
         },
     );
 }
 
+/// The preparation of the particles of one tile.
+pub struct PrepareTile<'a, D: SolidDimension> {
+    particles: &'a Particles<D>,
+    matter: &'a Matter,
+    instructions: InstructionSet,
+    /// Index of the first particle.
+    first: usize,
+    state: &'a mut [Line],
+    rows: &'a mut [Line],
+}
+
+impl<D: SolidDimension> PrepareTile<'_, D> {
+    /// Runs with the widest lanes of this machine.
+    pub(crate) fn dispatch(self) {
+        dispatch_with(self.instructions, self);
+    }
+}
+
+impl<D: SolidDimension> LaneKernel for PrepareTile<'_, D> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { particles, matter, first, state, rows, .. } = self;
+        let records = state.chunks_exact_mut(LANES * D::STATE_LINES);
+        for (b, (record, rows)) in records.zip(rows.chunks_exact_mut(Row::count::<D>())).enumerate() {
+            let i = first + b * LANES;
+            eight::<D, L>(particles, matter, i, record, rows);
+            for lane in particles.len().saturating_sub(i)..LANES {
+                fill(&mut record[lane * D::STATE_LINES..][..D::STATE_LINES], rows, lane);
+            }
+        }
+    }
+}
+
 /// Lanes behind the last particle: no volume, nothing that could trap.
+#[cold]
 fn fill(record: &mut [Line], rows: &mut [Line], lane: usize) {
     record.iter_mut().for_each(|line| line.0 = [0.0; LANES]);
     for row in 0..Row::LEAST_EIGENVALUE {
@@ -52,45 +81,67 @@ fn fill(record: &mut [Line], rows: &mut [Line], lane: usize) {
     rows[Row::TRANSVERSE].0[lane] = 1.0;
 }
 
-#[inline]
-fn particle<D: SolidDimension>(
+/// The record and the rows of eight particles from number `i` on.
+#[inline(always)]
+fn eight<D: SolidDimension, L: Lanes>(
     particles: &Particles<D>,
-    materials: &[Material],
+    matter: &Matter,
     i: usize,
     record: &mut [Line],
     rows: &mut [Line],
 ) {
-    let material = &materials[particles.material[i] as usize];
-    let (density, energy) = (particles.density[i], particles.specific_internal_energy[i]);
-    let pressure = pressure(particles, materials, i);
-    let mut put = |k: usize, value: f64| record[k / LANES].0[k % LANES] = value;
+    let end = (i + LANES).min(particles.len());
+    let constraint = &particles.constraint[i..end];
+    let eight = matter.eight::<L>(
+        &particles.material[i..end],
+        &particles.failed[i..end],
+        &particles.distension[i..end],
+    );
+    let density = L::load_from(&particles.density, i);
+    let energy = L::load_from(&particles.specific_internal_energy, i);
+    let (pressure, modulus) = matter.pressure_and_bulk_modulus(&eight, density, energy);
+    let inverse_density = L::one() / density;
+    let mut numbers = D::StateRecord::<L>::splat(L::zero());
     for a in 0..D::COUNT {
-        put(a, particles.position[a][i]);
-        put(State::fields::<D>() + a, particles.velocity[a][i]);
+        numbers[a] = L::load_from(&particles.position[a], i);
+        numbers[State::fields::<D>() + a] = L::load_from(&particles.velocity[a], i);
     }
-    put(State::volume::<D>(), particles.mass[i] / density);
+    numbers[State::volume::<D>()] = L::load_from(&particles.mass, i) * inverse_density;
     for k in 0..D::STRESS_COUNT {
         // In the plane the stored components are xx, yy, zz, xy: skip zz.
         let stored = if k < D::COUNT { k } else { k + 3 - D::COUNT };
-        let stress = particles.deviator[stored][i] - if k < D::COUNT { pressure } else { 0.0 };
-        put(State::fields::<D>() + D::COUNT + k, stress);
+        let deviator = L::load_from(&particles.deviator[stored], i);
+        numbers[State::fields::<D>() + D::COUNT + k] =
+            if k < D::COUNT { deviator - pressure } else { deviator };
     }
-    // Of the solid between voids.
-    let bulk_speed = material.bulk_sound_speed(density * particles.distension[i], energy);
-    let bulk_modulus = density * bulk_speed * bulk_speed;
-    let shear = if particles.failed[i] { 0.0 } else { material.strength.shear_modulus() };
-    let evolves = particles.constraint[i] != Constraint::Frozen;
-    let mut row = |r: usize, value: f64| rows[r].0[i % LANES] = value;
-    row(Row::INVERSE_DENSITY, 1.0 / density);
-    row(Row::BULK_MODULUS, if evolves { bulk_modulus } else { 0.0 });
-    row(Row::SHEAR_MODULUS, if evolves { shear } else { 0.0 });
-    row(Row::YIELD_STRENGTH, material.strength.yield_strength());
-    row(Row::PRESSURE, pressure);
-    row(Row::FREE, if particles.constraint[i] == Constraint::Free { 1.0 } else { 0.0 });
+    store_records(&numbers, record, D::STATE_LINES);
+    let (zero, half, shear) = (L::zero(), L::splat(0.5), eight.numbers.shear_modulus);
+    let (mut free, mut evolves) = (L::one(), L::one());
+    if constraint.iter().any(|&c| c != Constraint::Free) {
+        free = lanes_where(constraint, |c| c == Constraint::Free);
+        evolves = lanes_where(constraint, |c| c != Constraint::Frozen);
+    }
+    let resists = half.select_less(eight.failed_lanes(), zero, shear);
+    inverse_density.store(&mut rows[Row::INVERSE_DENSITY].0);
+    half.select_less(evolves, modulus, zero).store(&mut rows[Row::BULK_MODULUS].0);
+    half.select_less(evolves, resists, zero).store(&mut rows[Row::SHEAR_MODULUS].0);
+    eight.numbers.yield_strength.store(&mut rows[Row::YIELD_STRENGTH].0);
+    pressure.store(&mut rows[Row::PRESSURE].0);
+    free.store(&mut rows[Row::FREE].0);
     // ρ c_l = sqrt(ρ (K + 4 G/3)).
-    let shear = material.strength.shear_modulus();
-    row(Row::LONGITUDINAL, (density * (bulk_modulus + 4.0 / 3.0 * shear)).sqrt());
-    row(Row::TRANSVERSE, (density * shear).sqrt());
+    let stiffness = L::splat(4.0 / 3.0).mul_add(shear, modulus);
+    (density * stiffness).sqrt().store(&mut rows[Row::LONGITUDINAL].0);
+    (density * shear).sqrt().store(&mut rows[Row::TRANSVERSE].0);
+}
+
+/// 1 where a constraint is wanted, else 0.
+#[inline(always)]
+fn lanes_where<L: Lanes>(constraint: &[Constraint], wanted: impl Fn(Constraint) -> bool) -> L {
+    let mut lanes = [1.0; LANES];
+    for l in 0..constraint.len() {
+        lanes[l] = f64::from(wanted(constraint[l]));
+    }
+    L::load(&lanes)
 }
 
 /// Records of the second pass for a scheme without reconstruction: the state as it is, no correction.

@@ -18,6 +18,7 @@ use crate::check::check;
 use crate::dimension::SolidDimension;
 use crate::error::{SetupError, StepError};
 use crate::interventions::Interventions;
+use crate::matter::Matter;
 use crate::prepare;
 use crate::restart::Clock;
 use crate::scheme::Settings;
@@ -28,7 +29,7 @@ use crate::time_step::TimeStepReason;
 /// Particles that move by the equations of a scheme.
 pub struct Simulation<D: SolidDimension> {
     pub(crate) domain: Domain<D>,
-    pub(crate) materials: Vec<Material>,
+    pub(crate) matter: Matter,
     pub(crate) settings: Settings,
     pub(crate) particles: Particles<D>,
     pub(crate) time: f64,
@@ -85,7 +86,7 @@ impl<D: SolidDimension> Simulation<D> {
         check(&domain, &materials, &particles, &settings)?;
         Ok(Self {
             domain,
-            materials,
+            matter: Matter::new(materials),
             settings,
             particles,
             time: 0.0,
@@ -204,24 +205,24 @@ impl<D: SolidDimension> Simulation<D> {
 
     /// Stress of particle `i` [Pa].
     pub fn stress(&self, i: usize) -> D::Tensor<f64> {
-        prepare::stress(&self.particles, &self.materials, i)
+        prepare::stress(&self.particles, self.materials(), i)
     }
 
     /// Pressure of particle `i` [Pa].
     pub fn pressure(&self, i: usize) -> f64 {
-        prepare::pressure(&self.particles, &self.materials, i)
+        prepare::pressure(&self.particles, self.materials(), i)
     }
 
     /// Longitudinal sound speed of particle `i` [m/s].
     pub fn longitudinal_sound_speed(&self, i: usize) -> f64 {
-        let material = &self.materials[self.particles.material[i] as usize];
+        let material = &self.materials()[self.particles.material[i] as usize];
         material
             .longitudinal_sound_speed(self.particles.density[i], self.particles.specific_internal_energy[i])
     }
 
     /// The materials.
     pub fn materials(&self) -> &[Material] {
-        &self.materials
+        self.matter.materials()
     }
 
     /// The settings of the scheme.

@@ -21,10 +21,10 @@ pub(crate) struct Scratch {
     /// Records of the first pass; then, those of time-centring.
     state: Vec<Line>,
     /// Records of the second pass.
-    sides: Vec<Line>,
-    rows: Vec<Line>,
+    pub(crate) sides: Vec<Line>,
+    pub(crate) rows: Vec<Line>,
     /// What pairs add up to.
-    sums: Vec<Line>,
+    pub(crate) sums: Vec<Line>,
     /// What the pairs of each tile leave behind.
     pairs: Vec<TilePairs>,
     size: Vec<f64>,
@@ -94,7 +94,7 @@ impl<D: SolidDimension> Simulation<D> {
     /// Equations of state, and the records that the first pass reads.
     pub(crate) fn prepare(&mut self) {
         let s = &mut self.scratch;
-        prepare::prepare(&self.particles, &self.materials, &mut s.state, &mut s.rows);
+        prepare::prepare(&self.particles, &self.matter, self.instructions, &mut s.state, &mut s.rows);
         self.lists.halo().refresh(&mut s.state, D::STATE_LINES, self.lists.n_padded());
     }
 
@@ -188,7 +188,8 @@ impl<D: SolidDimension> Simulation<D> {
     pub(crate) fn update(&mut self, time_step: f64) -> TileReport {
         let s = &mut self.scratch;
         let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &s.sums };
-        update(&mut self.particles, &self.materials, &self.settings, outcome, time_step, &mut s.reports);
+        let how = (time_step, self.instructions);
+        update(&mut self.particles, &self.matter, &self.settings, outcome, how, &mut s.reports);
         let mut sum = TileReport::default();
         for report in &s.reports {
             (0..3).for_each(|a| sum.input.impulse[a] += report.input.impulse[a]);

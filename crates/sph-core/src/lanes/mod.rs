@@ -15,6 +15,7 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod exp;
 mod plain;
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -24,6 +25,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 use avx512::Avx512;
+pub use exp::exp;
 use plain::Plain;
 
 /// Number of lanes, and the number of particles in a block.
@@ -135,6 +137,29 @@ pub trait Lanes: Real {
     #[inline(always)]
     fn any_less(self, limit: Self) -> bool {
         self.less_mask(limit) != 0
+    }
+    /// Eight numbers of a column from number `first` on; the last one again where the column ends before.
+    #[inline(always)]
+    fn load_from(column: &[f64], first: usize) -> Self {
+        if let Some(eight) = column[first..].first_chunk() {
+            return Self::load(eight);
+        }
+        let mut numbers = [0.0; LANES];
+        for l in 0..LANES {
+            numbers[l] = column[(first + l).min(column.len() - 1)];
+        }
+        Self::load(&numbers)
+    }
+    /// Writes the lanes to a column from number `first` on, as far as it goes.
+    #[inline(always)]
+    fn store_to(self, column: &mut [f64], first: usize) {
+        let rest = &mut column[first..];
+        if let Some(eight) = rest.first_chunk_mut() {
+            self.store(eight);
+        } else {
+            let length = rest.len();
+            rest.copy_from_slice(&self.to_array()[..length]);
+        }
     }
     /// The lanes as an array.
     #[inline(always)]

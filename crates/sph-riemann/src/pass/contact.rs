@@ -241,7 +241,7 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
         let change = impedances.change::<D>(&times::<D, L>(&jump, &mean_e), &du, self.e);
         let mut velocity = du;
         for a in 0..D::COUNT {
-            velocity[a] = phi_l[a] + change.total[a];
+            velocity[a] = phi_l[a] + change.velocity[a];
         }
         let mut traction = impedances.traction::<D>(&times::<D, L>(&stress_l, &mean_e), &change, self.e);
         if RECONSTRUCT && matches!(pass.surface, SurfaceTreatment::SpectralCap { .. }) {
@@ -326,12 +326,18 @@ struct Impedances<L> {
     left: [L; 2],
     right: [L; 2],
     inverse_sum: [L; 2],
+    /// Sum of the transverse ones, where two fluids meet in one of the lanes.
+    of_fluids: Option<L>,
 }
 
-/// The change A of the left velocity: its part along R, and all of it.
+/// What the contact changes of the left side.
 struct Change<D: SolidDimension, L: Lanes> {
+    /// A along R [m/s].
     along: L,
-    total: D::Axes<L>,
+    /// A [m/s].
+    velocity: D::Axes<L>,
+    /// Part of the change of the traction that is not z A [Pa]: between fluids.
+    traction: Option<D::Axes<L>>,
 }
 
 impl<L: Lanes> Impedances<L> {
@@ -339,11 +345,13 @@ impl<L: Lanes> Impedances<L> {
     fn of<D: SolidDimension>(left: &D::SidesRecord<L>, right: &D::SidesRecord<L>) -> Self {
         let (l, t) = (Sides::longitudinal::<D>(), Sides::transverse::<D>());
         let (left, right) = ([left[l], left[t]], [right[l], right[t]]);
-        // Fluids have no transverse impedance: nothing is passed on across R.
-        let sum = [left[0] + right[0], (left[1] + right[1]).max(L::splat(NO_IMPEDANCE))];
+        let across = left[1] + right[1];
+        let least = L::splat(NO_IMPEDANCE);
+        let of_fluids = across.any_less(least).then_some(across);
+        let sum = [left[0] + right[0], across.max(least)];
         // One division for both.
         let inverse = L::one() / (sum[0] * sum[1]);
-        Self { left, right, inverse_sum: [sum[1] * inverse, sum[0] * inverse] }
+        Self { left, right, inverse_sum: [sum[1] * inverse, sum[0] * inverse], of_fluids }
     }
 
     /// Weights of the left and the right traction in t*: z_r and z_l over their sum.
@@ -359,12 +367,23 @@ impl<L: Lanes> Impedances<L> {
         let along = self.right[0].mul_add(du_r, dt_r) * self.inverse_sum[0];
         let as_transverse = self.right[1].mul_add(du_r, dt_r) * self.inverse_sum[1];
         let rest = along - as_transverse;
-        let mut total = *du;
+        let mut velocity = *du;
         for a in 0..D::COUNT {
             let push = self.right[1].mul_add(du[a], dt[a]);
-            total[a] = push.mul_add(self.inverse_sum[1], rest * e[a]);
+            velocity[a] = push.mul_add(self.inverse_sum[1], rest * e[a]);
         }
-        Change { along, total }
+        let mut change = Change::<D, L> { along, velocity, traction: None };
+        if let Some(across) = self.of_fluids {
+            // No wave runs across R: both sides meet half-way, in velocity and in traction.
+            let (half, least, mut traction) = (L::splat(0.5), L::splat(NO_IMPEDANCE), *dt);
+            for a in 0..D::COUNT {
+                let slip = half.mul_add(du[a] - du_r * e[a], along * e[a]);
+                change.velocity[a] = across.select_less(least, slip, change.velocity[a]);
+                traction[a] = across.select_less(least, half * (dt[a] - dt_r * e[a]), L::zero());
+            }
+            change.traction = Some(traction);
+        }
+        change
     }
 
     /// t* = t_l + z_l A, direction by direction.
@@ -378,7 +397,12 @@ impl<L: Lanes> Impedances<L> {
         let extra = (self.left[0] - self.left[1]) * change.along;
         let mut traction = *left;
         for a in 0..D::COUNT {
-            traction[a] = self.left[1].mul_add(change.total[a], extra.mul_add(e[a], left[a]));
+            traction[a] = self.left[1].mul_add(change.velocity[a], extra.mul_add(e[a], left[a]));
+        }
+        if let Some(between_fluids) = &change.traction {
+            for a in 0..D::COUNT {
+                traction[a] += between_fluids[a];
+            }
         }
         traction
     }

@@ -180,7 +180,7 @@ unsafe fn load_line<L: Lanes, R: Components<L>>(
 
 /// Writes a record of each of eight particles, `stride` lines each.
 #[inline(always)]
-fn store_records<L: Lanes, R: Components<L>>(record: &R, lines: &mut [Line], stride: usize) {
+pub(crate) fn store_records<L: Lanes, R: Components<L>>(record: &R, lines: &mut [Line], stride: usize) {
     for line in 0..stride {
         let mut numbers = [L::zero(); LANES];
         for k in 0..LANES {

@@ -1,77 +1,14 @@
-//! From rates to the state at the end of the step.
-//!
-//! ```text
-//! U ← U + τ f/ρ
-//! x ← x + τ ½(U + U_new)                    (explicit schemes: x + τ U)
-//! ρ ← ρ exp(-τ ∇·U) exp(τ r)                (paper eq. (16); r: volume consistency)
-//! e ← e + τ p/ρ - τ a·(U + ½τ a)            E = e + U²/2 changes by τ p/ρ exactly
-//! S ← return(Q (S + 2G τ dev D) Qᵀ)         Q turns by ½ curl U τ, exactly orthogonal (Cayley)
-//! ```
-//!
-//! Where the velocity is imposed, e takes what is left after the *unconstrained* change of ½U², and the velocity stays;
-//! momentum and energy that the constraint puts in are reported. Frozen particles only translate.
+//! The update of one particle, in plain code: what the lanes are held to.
 
-use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::lanes::{LANES, Line};
-use sph_core::neighbors::TILE;
-use sph_core::particles::{Constraint, Particles};
-use sph_core::tiles::TiledColumn;
+use sph_core::particles::Constraint;
 use sph_materials::{Damage, Material};
 
+use super::{Context, Fixed, LARGEST_RELAXATION, Outcome, TileColumns, TileReport, UpdateTile};
 use crate::dimension::{SolidDimension, symmetric};
-use crate::error::{Stage, StepError};
-use crate::interventions::Interventions;
 use crate::record::{Row, Sides, Sums};
 use crate::scheme::{Settings, SurfaceTreatment, VolumeConsistency};
-use crate::time_step::TimeStepReason;
-
-/// Largest relative change of density that volume consistency makes in a step [-].
-const LARGEST_RELAXATION: f64 = 1e-3;
-
-/// What imposed velocities put into the particles in a step, tile by tile.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ConstraintInput {
-    /// Momentum [kg m/s], per metre of depth in the plane.
-    pub impulse: [f64; 3],
-    /// Total energy [J], per metre of depth in the plane.
-    pub work: f64,
-}
-
-/// What the update of a tile found.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TileReport {
-    /// What imposed velocities put in.
-    pub input: ConstraintInput,
-    /// First particle with a state that cannot be.
-    pub broken: Option<u32>,
-    /// Work of the volume consistency: ∫ P dV of the density it changes [J], per metre of depth in the plane.
-    pub relaxation_work: f64,
-    /// Bounds that acted.
-    pub interventions: Interventions,
-}
-
-/// The step at whose end something was found.
-#[derive(Clone, Copy, Debug)]
-pub struct StepEnd {
-    /// Time at its end [s].
-    pub time: f64,
-    /// Its length [s].
-    pub time_step: f64,
-    /// Why it was as long.
-    pub reason: TimeStepReason,
-}
-
-/// What the passes found.
-#[derive(Clone, Copy)]
-pub struct Outcome<'a> {
-    /// Rows of blocks.
-    pub rows: &'a [Line],
-    /// Records of the contact pass.
-    pub sides: &'a [Line],
-    /// What pairs added up to.
-    pub sums: &'a [Line],
-}
 
 /// What the passes found for one particle.
 #[derive(Clone, Copy)]
@@ -83,7 +20,6 @@ struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    #[inline(always)]
     fn of<D: SolidDimension>(outcome: &Outcome<'a>, i: usize) -> Self {
         Self {
             rows: &outcome.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
@@ -92,141 +28,27 @@ impl<'a> Found<'a> {
             lane: i % LANES,
         }
     }
-    #[inline(always)]
     fn row(&self, r: usize) -> f64 {
         self.rows[r].0[self.lane]
     }
-    #[inline(always)]
     fn side(&self, k: usize) -> f64 {
         self.sides[k / LANES].0[k % LANES]
     }
-    #[inline(always)]
     fn sum(&self, k: usize) -> f64 {
         self.sums[k / LANES].0[k % LANES]
     }
 }
 
-/// Columns of particles that a step changes.
-struct Columns<'a, D: Dimension> {
-    position: D::Axes<TiledColumn<'a, f64>>,
-    velocity: D::Axes<TiledColumn<'a, f64>>,
-    deviator: D::Tensor<TiledColumn<'a, f64>>,
-    density: TiledColumn<'a, f64>,
-    energy: TiledColumn<'a, f64>,
-    plastic_strain: TiledColumn<'a, f64>,
-    relative_speed: TiledColumn<'a, f64>,
-    failed: TiledColumn<'a, bool>,
-    distension: TiledColumn<'a, f64>,
-}
-
-/// What the update of one particle reads besides its own state.
-struct Context<'a> {
-    materials: &'a [Material],
-    settings: &'a Settings,
-    time_step: f64,
-    /// Eigenvalue of L below which its inverse is capped [-]; zero where nothing is.
-    least_eigenvalue: f64,
-}
-
-/// Advances all particles by one step. `reports` has one entry a tile.
-pub fn update<D: SolidDimension>(
-    particles: &mut Particles<D>,
-    materials: &[Material],
-    settings: &Settings,
-    outcome: Outcome<'_>,
-    time_step: f64,
-    reports: &mut [TileReport],
-) {
-    fn tiled<D: Dimension>(columns: &mut D::AxisColumns) -> D::Axes<TiledColumn<'_, f64>> {
-        let mut columns = columns.as_mut().iter_mut();
-        Components::from_fn(|_| TiledColumn::new(columns.next().expect("one column an axis")))
+/// Updates all particles of a tile.
+fn update_tile<D: SolidDimension>(tile: UpdateTile<'_, D>) {
+    let UpdateTile { mut columns, first, fixed, context, report } = tile;
+    for k in 0..columns.density.len() {
+        let found = Found::of::<D>(&context.outcome, first + k);
+        columns.particle(k, first + k, fixed, context, found, report);
     }
-    let mut deviator = particles.deviator.as_mut().iter_mut();
-    let columns = Columns::<D> {
-        position: tiled::<D>(&mut particles.position),
-        velocity: tiled::<D>(&mut particles.velocity),
-        deviator: Components::from_fn(|_| TiledColumn::new(deviator.next().expect("one column a component"))),
-        density: TiledColumn::new(&mut particles.density),
-        energy: TiledColumn::new(&mut particles.specific_internal_energy),
-        plastic_strain: TiledColumn::new(&mut particles.plastic_strain),
-        relative_speed: TiledColumn::new(&mut particles.relative_speed),
-        failed: TiledColumn::new(&mut particles.failed),
-        distension: TiledColumn::new(&mut particles.distension),
-    };
-    let least_eigenvalue = match settings.surface {
-        SurfaceTreatment::SpectralCap { cap } if settings.scheme.reconstructs() => 1.0 / cap,
-        _ => 0.0,
-    };
-    let context = Context { materials, settings, time_step, least_eigenvalue };
-    let fixed = Fixed {
-        material: &particles.material,
-        constraint: &particles.constraint,
-        mass: &particles.mass,
-        size: &particles.size,
-        packing_excess: &particles.packing_excess,
-    };
-    reports.par_iter_mut().enumerate().for_each(|(t, report)| {
-        // SAFETY: the parallel iterator visits every tile once, and these are the only parts taken.
-        let mut tile = unsafe { TileColumns::<D>::take(&columns, t) };
-        *report = TileReport::default();
-        for k in 0..tile.density.len() {
-            let i = t * TILE + k;
-            tile.particle(k, i, &fixed, &context, Found::of::<D>(&outcome, i), report);
-        }
-    });
 }
 
-/// Columns that a step leaves as they are.
-struct Fixed<'a> {
-    material: &'a [u16],
-    constraint: &'a [Constraint],
-    mass: &'a [f64],
-    size: &'a [f64],
-    packing_excess: &'a [f64],
-}
-
-/// The parts of one tile. The components of vectors and tensors stand in fixed arrays, three and six being the most.
-struct TileColumns<'a, D: Dimension> {
-    position: [&'a mut [f64]; 3],
-    velocity: [&'a mut [f64]; 3],
-    deviator: [&'a mut [f64]; 6],
-    density: &'a mut [f64],
-    energy: &'a mut [f64],
-    plastic_strain: &'a mut [f64],
-    relative_speed: &'a mut [f64],
-    failed: &'a mut [bool],
-    distension: &'a mut [f64],
-    dimension: std::marker::PhantomData<D>,
-}
-
-impl<'a, D: SolidDimension> TileColumns<'a, D> {
-    /// # Safety
-    /// As [`TiledColumn::tile`].
-    unsafe fn take(columns: &Columns<'a, D>, t: usize) -> Self {
-        // SAFETY: the caller's promise; each column is taken once below.
-        unsafe {
-            Self {
-                position: std::array::from_fn(|a| {
-                    if a < D::COUNT { columns.position[a].tile(t) } else { &mut [] }
-                }),
-                velocity: std::array::from_fn(|a| {
-                    if a < D::COUNT { columns.velocity[a].tile(t) } else { &mut [] }
-                }),
-                deviator: std::array::from_fn(|k| {
-                    if k < D::TENSOR_COUNT { columns.deviator[k].tile(t) } else { &mut [] }
-                }),
-                density: columns.density.tile(t),
-                energy: columns.energy.tile(t),
-                plastic_strain: columns.plastic_strain.tile(t),
-                relative_speed: columns.relative_speed.tile(t),
-                failed: columns.failed.tile(t),
-                distension: columns.distension.tile(t),
-                dimension: std::marker::PhantomData,
-            }
-        }
-    }
-
-    #[inline(always)]
+impl<D: SolidDimension> TileColumns<'_, D> {
     fn particle(
         &mut self,
         k: usize,
@@ -263,7 +85,7 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
         if !free {
             report.input.work -= fixed.mass[i] * kinetic;
         }
-        let material = &context.materials[fixed.material[i] as usize];
+        let material = &context.matter.materials()[fixed.material[i] as usize];
         let gradient = velocity_gradient::<D>(found, context.settings);
         let divergence: f64 = (0..D::COUNT).map(|a| gradient[a][a]).sum();
         let relaxation = match context.settings.volume_consistency {
@@ -305,7 +127,6 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
     }
 
     /// Brings the deviator back to what is left of the yield surface after failure.
-    #[cold]
     fn soften(&mut self, k: usize, strength_left: f64, material: &Material) {
         let s: [f64; 6] =
             std::array::from_fn(|c| if c < D::TENSOR_COUNT { self.deviator[c][k] } else { 0.0 });
@@ -320,7 +141,6 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
     }
 
     /// Elastic trial, rotation, return to the yield surface; equivalent plastic strain (σ_vM - Y)/(3 G).
-    #[inline(always)]
     fn advance_deviator(&mut self, k: usize, gradient: &[[f64; 3]; 3], material: &Material, tau: f64) {
         let shear = material.strength.shear_modulus();
         if shear == 0.0 {
@@ -352,7 +172,6 @@ impl<'a, D: SolidDimension> TileColumns<'a, D> {
 }
 
 /// S ← Q S Qᵀ with the Cayley rotation Q = I + 2/(1 + t²)(T + T²), T = ½τ W, W_kl = ½(∂U_k/∂x_l - ∂U_l/∂x_k).
-#[inline(always)]
 fn turn<D: Dimension>(s: &mut [[f64; 3]; 3], gradient: &[[f64; 3]; 3], tau: f64) {
     // gradient[a][b] = ∂U_b/∂x_a; half the angle about the axis that leads a to b.
     let half = |a: usize, b: usize| 0.25 * tau * (gradient[a][b] - gradient[b][a]);
@@ -389,7 +208,6 @@ fn turn<D: Dimension>(s: &mut [[f64; 3]; 3], gradient: &[[f64; 3]; 3], tau: f64)
 }
 
 /// ∂U_b/∂x_a at [a][b], from the raw sum R of the contact pass.
-#[inline(always)]
 fn velocity_gradient<D: SolidDimension>(found: Found<'_>, settings: &Settings) -> [[f64; 3]; 3] {
     let inverse_volume = 1.0 / found.side(Sides::volume::<D>()).abs();
     let raw = |a: usize, b: usize| found.sum(Sums::gradient::<D>() + a * D::COUNT + b) * inverse_volume;
@@ -420,7 +238,6 @@ fn velocity_gradient<D: SolidDimension>(found: Found<'_>, settings: &Settings) -
 }
 
 /// W_ab = ε_bca Ω_c with Ω = (tr L I - L)⁻¹ ε_eab R_ab.
-#[inline(always)]
 fn rigid_turn<D: SolidDimension>(
     raw: impl Fn(usize, usize) -> f64,
     matrix: impl Fn(usize, usize) -> f64,
@@ -441,7 +258,6 @@ fn rigid_turn<D: SolidDimension>(
 }
 
 /// r = d(ln ρ)/dt of the volume consistency [1/s]; see [`crate::volume`].
-#[inline(always)]
 fn relaxation_rate(
     v: &VolumeConsistency,
     settings: &Settings,
@@ -470,21 +286,115 @@ fn relaxation_rate(
     (v.rate * sound_speed / h * share).clamp(-largest, largest)
 }
 
-/// The error of the first broken particle, if any.
-pub fn first_broken<D: SolidDimension>(
-    reports: &[TileReport],
-    particles: &Particles<D>,
-    end: StepEnd,
-) -> Option<StepError> {
-    let i = reports.iter().find_map(|report| report.broken)? as usize;
-    Some(StepError::Broken {
-        particle: particles.id[i],
-        position: (0..D::COUNT).map(|a| particles.position[a][i]).collect(),
-        stage: Stage::Update,
-        time: end.time,
-        time_step: end.time_step,
-        reason: end.reason,
-        density: particles.density[i],
-        specific_internal_energy: particles.specific_internal_energy[i],
-    })
+mod tests {
+    use sph_core::domain::Domain;
+    use sph_core::lanes::InstructionSet;
+    use sph_core::particles::{Particle, Particles};
+    use sph_core::{Dim2, Dim3, Vector};
+    use sph_materials::{Failure, Strength, VoidGrowth, library};
+
+    use super::super::for_each_tile;
+    use super::*;
+    use crate::matter::Matter;
+    use crate::simulation::Simulation;
+
+    const SIZE: f64 = 1e-6;
+
+    /// Copper, a copper with voids, a fluid.
+    fn materials(with_voids: bool) -> Vec<Material> {
+        let copper = library::material("porous-copper").expect("a library material");
+        let mut other = copper.clone();
+        if with_voids {
+            other.failure = Failure::VoidGrowth(VoidGrowth::of_strength(0.35e9));
+        }
+        let fluid = Material { strength: Strength::Fluid, failure: Failure::None, ..copper.clone() };
+        vec![copper, other, fluid]
+    }
+
+    /// A ball that tears itself apart on one side and is pressed on the other, some of it held, with a pore.
+    fn ball<D: SolidDimension>(cells: usize, settings: Settings, materials: Vec<Material>) -> Simulation<D> {
+        let mut particles = Particles::<D>::default();
+        for cell in 0..cells.pow(D::COUNT as u32) {
+            let index = |a: usize| (cell / cells.pow(a as u32) % cells) as f64;
+            let position = D::vector(|a| (index(a) + 0.5 + 0.05 * (index(0) + a as f64).sin()) * SIZE);
+            let middle = D::vector(|_| 0.5 * cells as f64 * SIZE);
+            if (position - middle).length() < 2.0 * SIZE {
+                continue;
+            }
+            let mass = 8960.0 * SIZE.powi(D::COUNT as i32);
+            let mut particle = Particle::at_rest(cell as u64, position, mass, SIZE, 8960.0);
+            particle.velocity = (position - middle) * (40.0 * (index(0) - 3.0) / SIZE);
+            particle.material = (cell % 11 / 4) as u16;
+            particle.constraint = match cell % 17 {
+                3 => Constraint::ImposedVelocity,
+                5 => Constraint::Frozen,
+                _ => Constraint::Free,
+            };
+            particles.push(particle);
+        }
+        Simulation::new(Domain::open(), materials, particles, settings).expect("a sound set-up")
+    }
+
+    fn lanes_agree<D: SolidDimension>(cells: usize, settings: Settings, with_voids: bool) {
+        let mut simulation = ball::<D>(cells, settings, materials(with_voids));
+        let (mut failed, mut yielded) = (0, 0);
+        for step in 0..12 {
+            if simulation.lists_stale() {
+                simulation.rebuild_lists();
+                simulation.measure_volumes();
+            }
+            simulation.prepare();
+            let (time_step, _) = simulation.choose_time_step(f64::INFINITY).expect("a sound step");
+            simulation.find_sides(time_step);
+            simulation.solve_contacts();
+            simulation.center_in_time(time_step);
+            let mut plain = simulation.particles.clone();
+            let mut reports = vec![TileReport::default(); plain.len().div_ceil(256)];
+            let scratch = &simulation.scratch;
+            let outcome = Outcome { rows: &scratch.rows, sides: &scratch.sides, sums: &scratch.sums };
+            let matter = Matter::new(simulation.materials().to_vec());
+            let how = (time_step, InstructionSet::Plain);
+            for_each_tile::<D>(&mut plain, &matter, &settings, outcome, how, &mut reports, update_tile);
+            let lanes = simulation.update(time_step);
+            same(&simulation.particles, &plain, step);
+            let mut sum = TileReport::default();
+            for report in &reports {
+                assert_eq!(report.broken, None);
+                (0..3).for_each(|a| sum.input.impulse[a] += report.input.impulse[a]);
+                sum.input.work += report.input.work;
+                sum.relaxation_work += report.relaxation_work;
+                sum.interventions += report.interventions;
+            }
+            assert_eq!(lanes.interventions, sum.interventions);
+            let scale = 1e-9 * (sum.input.work.abs() + sum.relaxation_work + 1e-12);
+            assert!((lanes.input.work - sum.input.work).abs() < scale);
+            assert!((lanes.relaxation_work - sum.relaxation_work).abs() < scale);
+            simulation.lists_valid = step % 4 != 3;
+            failed = failed.max(plain.failed.iter().filter(|&&f| f).count());
+            yielded = yielded.max(plain.plastic_strain.iter().filter(|&&s| s > 0.0).count());
+        }
+        assert!(failed > 5 && yielded > 5, "{failed} have failed, {yielded} have yielded");
+    }
+
+    /// Columns agree to rounding, as seen from the largest value of each.
+    fn same<D: SolidDimension>(lanes: &Particles<D>, plain: &Particles<D>, step: usize) {
+        assert_eq!(lanes.failed, plain.failed, "step {step}");
+        for ((name, a), (_, b)) in lanes.columns().iter().zip(plain.columns()) {
+            let scale = b.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
+            for (i, (x, y)) in a.iter().zip(b).enumerate() {
+                let near = (x - y).abs() <= 1e-11 * scale;
+                assert!(near, "{name} of particle {i} in step {step}: {x:e} in lanes, {y:e} in plain code");
+            }
+        }
+    }
+
+    #[test]
+    fn the_update_in_lanes_is_that_of_one_particle() {
+        for with_voids in [false, true] {
+            lanes_agree::<Dim2>(15, Settings::default(), with_voids);
+            lanes_agree::<Dim3>(8, Settings::default(), with_voids);
+        }
+        lanes_agree::<Dim2>(15, Settings::for_scheme(crate::Scheme::Csph), false);
+        lanes_agree::<Dim2>(15, Settings::for_scheme(crate::Scheme::TkcMuscl), false);
+    }
 }

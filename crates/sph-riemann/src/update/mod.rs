@@ -1,0 +1,232 @@
+//! From rates to the state at the end of the step.
+//!
+//! ```text
+//! U ← U + τ f/ρ
+//! x ← x + τ ½(U + U_new)                    (explicit schemes: x + τ U)
+//! ρ ← ρ exp(-τ ∇·U) exp(τ r)                (paper eq. (16); r: volume consistency)
+//! e ← e + τ p/ρ - τ a·(U + ½τ a)            E = e + U²/2 changes by τ p/ρ exactly
+//! S ← return(Q (S + 2G τ dev D) Qᵀ)         Q turns by ½ curl U τ, exactly orthogonal (Cayley)
+//! ```
+//!
+//! Eight particles at a time: the module `block`; the module `plain` has the same for one particle, for tests.
+//!
+//! Where the velocity is imposed, e takes what is left after the *unconstrained* change of ½U², and the velocity stays;
+//! momentum and energy that the constraint puts in are reported. Frozen particles only translate.
+
+mod block;
+#[cfg(test)]
+mod plain;
+
+use rayon::prelude::*;
+use sph_core::dimension::{Components, Dimension};
+use sph_core::lanes::{InstructionSet, Line};
+use sph_core::neighbors::TILE;
+use sph_core::particles::{Constraint, Particles};
+use sph_core::tiles::TiledColumn;
+
+use crate::dimension::SolidDimension;
+use crate::error::{Stage, StepError};
+use crate::interventions::Interventions;
+use crate::matter::Matter;
+use crate::scheme::{Settings, SurfaceTreatment};
+use crate::time_step::TimeStepReason;
+pub use block::UpdateTile;
+
+/// Largest relative change of density that volume consistency makes in a step [-].
+const LARGEST_RELAXATION: f64 = 1e-3;
+
+/// What imposed velocities put into the particles in a step, tile by tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ConstraintInput {
+    /// Momentum [kg m/s], per metre of depth in the plane.
+    pub impulse: [f64; 3],
+    /// Total energy [J], per metre of depth in the plane.
+    pub work: f64,
+}
+
+/// What the update of a tile found.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TileReport {
+    /// What imposed velocities put in.
+    pub input: ConstraintInput,
+    /// First particle with a state that cannot be.
+    pub broken: Option<u32>,
+    /// Work of the volume consistency: ∫ P dV of the density it changes [J], per metre of depth in the plane.
+    pub relaxation_work: f64,
+    /// Bounds that acted.
+    pub interventions: Interventions,
+}
+
+/// The step at whose end something was found.
+#[derive(Clone, Copy, Debug)]
+pub struct StepEnd {
+    /// Time at its end [s].
+    pub time: f64,
+    /// Its length [s].
+    pub time_step: f64,
+    /// Why it was as long.
+    pub reason: TimeStepReason,
+}
+
+/// What the passes found.
+#[derive(Clone, Copy)]
+pub struct Outcome<'a> {
+    /// Rows of blocks.
+    pub rows: &'a [Line],
+    /// Records of the contact pass.
+    pub sides: &'a [Line],
+    /// What pairs added up to.
+    pub sums: &'a [Line],
+}
+
+/// Columns of particles that a step changes.
+struct Columns<'a, D: Dimension> {
+    position: D::Axes<TiledColumn<'a, f64>>,
+    velocity: D::Axes<TiledColumn<'a, f64>>,
+    deviator: D::Tensor<TiledColumn<'a, f64>>,
+    density: TiledColumn<'a, f64>,
+    energy: TiledColumn<'a, f64>,
+    plastic_strain: TiledColumn<'a, f64>,
+    relative_speed: TiledColumn<'a, f64>,
+    failed: TiledColumn<'a, bool>,
+    distension: TiledColumn<'a, f64>,
+}
+
+/// What the update reads besides the state of particles.
+struct Context<'a> {
+    matter: &'a Matter,
+    settings: &'a Settings,
+    outcome: Outcome<'a>,
+    time_step: f64,
+    instructions: InstructionSet,
+    /// Eigenvalue of L below which its inverse is capped [-]; zero where nothing is.
+    least_eigenvalue: f64,
+}
+
+/// Advances all particles by one step. `reports` has one entry a tile.
+pub fn update<D: SolidDimension>(
+    particles: &mut Particles<D>,
+    matter: &Matter,
+    settings: &Settings,
+    outcome: Outcome<'_>,
+    (time_step, instructions): (f64, InstructionSet),
+    reports: &mut [TileReport],
+) {
+    for_each_tile::<D>(particles, matter, settings, outcome, (time_step, instructions), reports, D::update);
+}
+
+/// Runs an update on all tiles.
+fn for_each_tile<D: SolidDimension>(
+    particles: &mut Particles<D>,
+    matter: &Matter,
+    settings: &Settings,
+    outcome: Outcome<'_>,
+    (time_step, instructions): (f64, InstructionSet),
+    reports: &mut [TileReport],
+    work: impl Fn(UpdateTile<'_, D>) + Sync,
+) {
+    fn tiled<D: Dimension>(columns: &mut D::AxisColumns) -> D::Axes<TiledColumn<'_, f64>> {
+        let mut columns = columns.as_mut().iter_mut();
+        Components::from_fn(|_| TiledColumn::new(columns.next().expect("one column an axis")))
+    }
+    let mut deviator = particles.deviator.as_mut().iter_mut();
+    let columns = Columns::<D> {
+        position: tiled::<D>(&mut particles.position),
+        velocity: tiled::<D>(&mut particles.velocity),
+        deviator: Components::from_fn(|_| TiledColumn::new(deviator.next().expect("one column a component"))),
+        density: TiledColumn::new(&mut particles.density),
+        energy: TiledColumn::new(&mut particles.specific_internal_energy),
+        plastic_strain: TiledColumn::new(&mut particles.plastic_strain),
+        relative_speed: TiledColumn::new(&mut particles.relative_speed),
+        failed: TiledColumn::new(&mut particles.failed),
+        distension: TiledColumn::new(&mut particles.distension),
+    };
+    let least_eigenvalue = match settings.surface {
+        SurfaceTreatment::SpectralCap { cap } if settings.scheme.reconstructs() => 1.0 / cap,
+        _ => 0.0,
+    };
+    let context = Context { matter, settings, outcome, time_step, instructions, least_eigenvalue };
+    let fixed = Fixed {
+        material: &particles.material,
+        constraint: &particles.constraint,
+        mass: &particles.mass,
+        size: &particles.size,
+        packing_excess: &particles.packing_excess,
+    };
+    reports.par_iter_mut().enumerate().for_each(|(t, report)| {
+        // SAFETY: the parallel iterator visits every tile once, and these are the only parts taken.
+        let columns = unsafe { TileColumns::<D>::take(&columns, t) };
+        *report = TileReport::default();
+        work(UpdateTile { columns, first: t * TILE, fixed: &fixed, context: &context, report });
+    });
+}
+
+/// Columns that a step leaves as they are.
+struct Fixed<'a> {
+    material: &'a [u16],
+    constraint: &'a [Constraint],
+    mass: &'a [f64],
+    size: &'a [f64],
+    packing_excess: &'a [f64],
+}
+
+/// The parts of one tile. The components of vectors and tensors stand in fixed arrays, three and six being the most.
+struct TileColumns<'a, D: Dimension> {
+    position: [&'a mut [f64]; 3],
+    velocity: [&'a mut [f64]; 3],
+    deviator: [&'a mut [f64]; 6],
+    density: &'a mut [f64],
+    energy: &'a mut [f64],
+    plastic_strain: &'a mut [f64],
+    relative_speed: &'a mut [f64],
+    failed: &'a mut [bool],
+    distension: &'a mut [f64],
+    dimension: std::marker::PhantomData<D>,
+}
+
+impl<'a, D: SolidDimension> TileColumns<'a, D> {
+    /// # Safety
+    /// As [`TiledColumn::tile`].
+    unsafe fn take(columns: &Columns<'a, D>, t: usize) -> Self {
+        // SAFETY: the caller's promise; each column is taken once below.
+        unsafe {
+            Self {
+                position: std::array::from_fn(|a| {
+                    if a < D::COUNT { columns.position[a].tile(t) } else { &mut [] }
+                }),
+                velocity: std::array::from_fn(|a| {
+                    if a < D::COUNT { columns.velocity[a].tile(t) } else { &mut [] }
+                }),
+                deviator: std::array::from_fn(|k| {
+                    if k < D::TENSOR_COUNT { columns.deviator[k].tile(t) } else { &mut [] }
+                }),
+                density: columns.density.tile(t),
+                energy: columns.energy.tile(t),
+                plastic_strain: columns.plastic_strain.tile(t),
+                relative_speed: columns.relative_speed.tile(t),
+                failed: columns.failed.tile(t),
+                distension: columns.distension.tile(t),
+                dimension: std::marker::PhantomData,
+            }
+        }
+    }
+}
+
+/// The error of the first broken particle, if any.
+pub fn first_broken<D: SolidDimension>(
+    reports: &[TileReport],
+    particles: &Particles<D>,
+    end: StepEnd,
+) -> Option<StepError> {
+    let i = reports.iter().find_map(|report| report.broken)? as usize;
+    Some(StepError::Broken {
+        particle: particles.id[i],
+        position: (0..D::COUNT).map(|a| particles.position[a][i]).collect(),
+        stage: Stage::Update,
+        time: end.time,
+        time_step: end.time_step,
+        reason: end.reason,
+        density: particles.density[i],
+        specific_internal_energy: particles.specific_internal_energy[i],
+    })
+}

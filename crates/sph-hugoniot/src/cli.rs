@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand};
 
 use crate::config::resolve::PARTICLE_VELOCITIES;
 use crate::config::units::Velocity;
+use crate::report::curves::load_data;
 use crate::report::machine;
 use crate::run::{self, Earlier, RunEnd, RunOptions};
 use crate::shell::{self, ColorChoice};
@@ -249,6 +250,10 @@ fn show_status(folder: &Path, json: bool) -> anyhow::Result<u8> {
 
 fn check_case(path: &Path, json: bool, threads: Option<usize>, color: bool) -> anyhow::Result<u8> {
     let Some(case) = load(path, color) else { return Ok(BAD_INPUT) };
+    if let Err(error) = load_data(&case) {
+        eprintln!("error: {error}");
+        return Ok(BAD_INPUT);
+    }
     let check = check::Check::new(case, threads.unwrap_or_else(available_threads).max(1));
     if json {
         println!("{}", serde_json::to_string_pretty(&check)?);

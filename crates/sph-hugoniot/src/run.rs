@@ -18,6 +18,7 @@ use crate::microstructure::{self, Sample};
 use crate::outcome::{PointOutcome, Status};
 use crate::point::Control;
 use crate::refine;
+use crate::report::curves::{Curves, load_data};
 use crate::report::html::RunFacts;
 use crate::report::{Report, earlier, machine, monitors, summary};
 use crate::restart::Keeper;
@@ -94,11 +95,16 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     if let Some(refusal) = earlier::settle(&options.folder, case, options.earlier)? {
         return Ok(RunEnd::Refused(refusal));
     }
+    let data = match load_data(case) {
+        Ok(data) => data,
+        Err(error) => return Ok(RunEnd::Refused(error.to_string())),
+    };
     let report = Report::create(&options.folder, case, case_text)?;
     let board = StatusBoard::new(&options.folder, &case.name, &options.go_on);
     let outcomes = rounds(case, &sample, &report, &board, options, interrupt)?;
     let finished: Vec<&PointOutcome> = outcomes.iter().collect();
-    report.write_curves(case, &sample, &finished)?;
+    let curves = Curves::new(case, &sample, &finished, &data);
+    report.write_curves(&curves)?;
     let facts = RunFacts {
         command: machine::command(),
         started: clock::unix_seconds(began),
@@ -106,14 +112,14 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         threads: options.threads,
         case_text: case_text.to_owned(),
     };
-    report.write_page(case, &sample, &finished, &facts)?;
+    report.write_page(&curves, &sample, &finished, &facts)?;
     let end = end_of(&finished, interrupt);
     board.finish(end.word());
     let seconds = started.elapsed().as_secs_f64();
     if options.json {
         println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
     } else if !options.quiet {
-        print_summary(&finished, report.folder(), seconds);
+        print_summary(&curves, &finished, report.folder(), seconds);
     }
     Ok(end)
 }
@@ -190,10 +196,12 @@ fn end_of(outcomes: &[&PointOutcome], interrupt: &AtomicBool) -> RunEnd {
     }
 }
 
-fn print_summary(outcomes: &[&PointOutcome], folder: &Path, seconds: f64) {
+fn print_summary(curves: &Curves<'_>, outcomes: &[&PointOutcome], folder: &Path, seconds: f64) {
     let mut stages = StageTimes::default();
     outcomes.iter().for_each(|o| stages.merge(&o.stages));
     println!("{}", summary::points(outcomes).to_text());
+    curves.lines().iter().for_each(|line| println!("{line}"));
+    println!();
     println!("{}", summary::stages(&stages).to_text());
     let steps: u64 = outcomes.iter().map(|o| o.particle_steps).sum();
     let core_seconds: f64 = outcomes.iter().map(|o| o.wall_seconds).sum();

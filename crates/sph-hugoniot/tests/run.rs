@@ -65,6 +65,7 @@ fn the_smoke_case_runs_from_file_to_report() {
             );
         }
     }
+    assert!(out.join("curve/curve.csv").exists() && out.join("curve/fits.json").exists());
     assert!(out.join("plots/fields_up_0300.png").metadata().unwrap().len() > 1000);
 }
 

@@ -7,6 +7,8 @@ use sph_io::table::{Column, Table};
 use sph_riemann::StageTimes;
 
 use super::belief::{self, Answer};
+use super::curves::Curves;
+use super::planes::{self, Plane};
 use super::{machine, monitors, plots, summary};
 use crate::check::{Check as CaseCheck, duration};
 use crate::config::Case;
@@ -35,7 +37,8 @@ pub struct RunFacts {
 }
 
 /// The page of a run.
-pub fn page(case: &Case, sample: &Sample, outcomes: &[&PointOutcome], facts: &RunFacts) -> Page {
+pub fn page(curves: &Curves<'_>, sample: &Sample, outcomes: &[&PointOutcome], facts: &RunFacts) -> Page {
+    let case = curves.case;
     let (verdict, words) = answer(case, outcomes);
     let (name, size) = (&case.material.name, case.medium.particle_size * MICRO);
     let lead = format!("u_s(u_p) of {name} with porosity {:.4}, particles of {size:.3} µm", sample.porosity);
@@ -44,7 +47,7 @@ pub fn page(case: &Case, sample: &Sample, outcomes: &[&PointOutcome], facts: &Ru
         .with_verdict(verdict, words)
         .with_facts(run_facts(outcomes, facts))
         .with_section(belief_section(case, outcomes))
-        .with_section(curve_section(case, sample, outcomes));
+        .with_section(curve_section(curves, outcomes));
     let mut points =
         Section::new("Point by point").with_text("Open a point for its history, profile, film and fields.");
     for outcome in outcomes {
@@ -157,18 +160,27 @@ fn links(outcomes: &[&PointOutcome]) -> Vec<String> {
     outcomes.iter().map(|o| format!("#{}", o.file_stem())).collect()
 }
 
-fn curve_section(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Section {
+/// Planes in the order of the page.
+const CURVE_PICTURES: [(Plane, &str); 4] = [
+    (Plane::ShockVelocity, "Shock velocity over particle velocity."),
+    (Plane::StressVelocity, "Stress behind the wave over particle velocity."),
+    (Plane::StressDensity, "Stress over density behind the wave."),
+    (Plane::StressVolume, "Stress over volume behind the wave."),
+];
+
+fn curve_section(curves: &Curves<'_>, outcomes: &[&PointOutcome]) -> Section {
     let mut section = Section::new("The curve");
-    if outcomes.iter().any(|o| o.shock_velocity.is_finite()) {
-        section = section
-            .with_picture(
-                plots::shock_velocities(case, sample, outcomes),
-                "Shock velocity over particle velocity.",
-            )
-            .with_picture(
-                plots::with_solid(case, sample, outcomes),
-                "The same beside the solid without pores.",
-            );
+    if !curves.curve.points.is_empty() {
+        for (plane, words) in CURVE_PICTURES {
+            section = section.with_picture(planes::plane(curves, plane), words);
+        }
+        section = section.with_picture(planes::with_solid(curves), "u_s beside the solid without pores.");
+    }
+    if !curves.fits.is_empty() {
+        section = section.with_picture(planes::fits(curves), "Fits, and what they leave of the points.");
+        for line in curves.lines() {
+            section = section.with_text(line);
+        }
     }
     let verdicts: Vec<Verdict> = outcomes
         .iter()

@@ -6,16 +6,20 @@
 //! case.json           the resolved case in SI
 //! hugoniot.csv, .json the table of all finished points
 //! points/up_0100/     profile.csv, history.csv and monitors.csv of one point; its outcome, or its last states (crate::restart)
+//! curve/              the curve in all planes, fits, P-α parameters ([`export`])
 //! plots/              hugoniot, profiles, histories, fields
 //! ```
 //!
 //! The table is written anew after each finished point, atomically: whatever ends a run, what was computed is there.
 
 pub mod belief;
+pub mod curves;
 pub mod earlier;
+pub mod export;
 pub mod html;
 pub mod machine;
 pub mod monitors;
+pub mod planes;
 pub mod plots;
 pub mod summary;
 pub mod table;
@@ -24,6 +28,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
+use self::curves::Curves;
 use crate::config::Case;
 use crate::microstructure::Sample;
 use crate::outcome::{PointOutcome, file_stem};
@@ -86,27 +91,24 @@ impl Report {
         Ok(())
     }
 
-    /// Writes the pictures of all points together; nothing without a measured one.
-    pub fn write_curves(&self, case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Result<()> {
-        if !outcomes.iter().any(|o| o.shock_velocity.is_finite()) {
-            return Ok(());
-        }
-        self.write_figure(&plots::shock_velocities(case, sample, outcomes), "hugoniot")?;
-        self.write_figure(&plots::with_solid(case, sample, outcomes), "hugoniot_with_solid")
+    /// Writes what is made of all points together: tables, exports, pictures; nothing without a measured one.
+    pub fn write_curves(&self, curves: &Curves<'_>) -> Result<()> {
+        if curves.curve.points.is_empty() { Ok(()) } else { curves.write(self) }
     }
 
     /// Writes the page with everything on it.
     pub fn write_page(
         &self,
-        case: &Case,
+        curves: &Curves<'_>,
         sample: &Sample,
         outcomes: &[&PointOutcome],
         facts: &html::RunFacts,
     ) -> Result<()> {
-        Ok(html::page(case, sample, outcomes, facts).write(self.folder.join("report.html"))?)
+        Ok(html::page(curves, sample, outcomes, facts).write(self.folder.join("report.html"))?)
     }
 
-    fn write_figure(&self, figure: &sph_io::plot::Figure, name: &str) -> Result<()> {
+    /// Writes a picture as SVG and PNG.
+    pub(crate) fn write_figure(&self, figure: &sph_io::plot::Figure, name: &str) -> Result<()> {
         figure.write_svg(self.plot(&format!("{name}.svg")))?;
         Ok(figure.write_png(self.plot(&format!("{name}.png")))?)
     }

@@ -177,13 +177,18 @@ impl Canvas {
     }
 
     pub fn polygon(&mut self, points: &[(f64, f64)], color: Color) {
+        self.shade(points, color, 1.0);
+    }
+
+    /// A filled polygon; `opacity` from 0 to 1.
+    pub fn shade(&mut self, points: &[(f64, f64)], color: Color, opacity: f64) {
         let corners: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
         self.scene.add(Primitive::Path(Box::new(PathData {
             d: format!("M {} Z", corners.join(" L ")),
             fill: Some(back_color(color)),
             stroke: BackColor::None,
             stroke_width: 0.0,
-            opacity: None,
+            opacity: (opacity < 1.0).then_some(opacity),
             stroke_dasharray: None,
         })));
     }

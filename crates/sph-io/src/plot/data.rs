@@ -10,6 +10,7 @@ const LINE_WIDTH: f64 = 2.0;
 const ERROR_WIDTH: f64 = 1.5;
 const ERROR_CAP: f64 = 4.5;
 const MARKER_RADIUS: f64 = 4.8;
+pub(super) const BAND_OPACITY: f64 = 0.22;
 const NOTE_STROKE: Stroke = Stroke { color: Color::GRAY, width: 1.2, dash: Dash::Pattern(5.0, 4.0) };
 /// Points of a curve closer than this are drawn as one.
 const RESOLUTION: f64 = 0.15;
@@ -21,7 +22,7 @@ impl Series {
 
     pub(super) fn stroke(&self, idx: usize) -> Option<Stroke> {
         let dash = match self.style {
-            Style::Points => return None,
+            Style::Points | Style::Band => return None,
             Style::Line | Style::LineWithPoints => Dash::Solid,
             Style::Dashed => Dash::Pattern(9.0, 5.5),
             Style::Dotted => Dash::Pattern(1.5, 4.5),
@@ -38,15 +39,18 @@ impl Series {
 pub(super) fn y_extent(series: &Series) -> impl Iterator<Item = f64> {
     let errors = series.y_error.iter().flatten().copied().map(finite_or_zero);
     let bars = series.y.iter().zip(errors).flat_map(|(&y, error)| [y - error, y + error]);
-    series.y.iter().copied().chain(bars)
+    series.y.iter().copied().chain(bars).chain(series.lower.iter().flatten().copied())
 }
 
 fn finite_or_zero(value: f64) -> f64 {
     if value.is_finite() { value.abs() } else { 0.0 }
 }
 
-/// Curves first, so that no curve hides a marker.
+/// Bands first, then curves, so that none hides a marker.
 pub(super) fn draw_all_series(canvas: &mut Canvas, plan: &PanelPlan<'_>) {
+    for (idx, series) in plan.panel.series.iter().enumerate() {
+        draw_band(canvas, plan, series, series.color_at(idx));
+    }
     for (idx, series) in plan.panel.series.iter().enumerate() {
         if let Some(stroke) = series.stroke(idx) {
             pieces(plan, series).iter().for_each(|piece| canvas.polyline(piece, stroke));
@@ -59,6 +63,21 @@ pub(super) fn draw_all_series(canvas: &mut Canvas, plan: &PanelPlan<'_>) {
                 draw_marker(canvas, idx, center, series.color_at(idx));
             }
         }
+    }
+}
+
+/// The shade of a band; places that cannot be drawn are left out.
+fn draw_band(canvas: &mut Canvas, plan: &PanelPlan<'_>, series: &Series, color: Color) {
+    let Some(lower) = &series.lower else { return };
+    let edge = |y: &[f64]| -> Vec<(f64, f64)> {
+        let places = series.x.iter().zip(y).zip(series.y.iter().zip(lower));
+        let whole = places.filter(|(_, (high, low))| high.is_finite() && low.is_finite());
+        whole.filter_map(|((&x, &y), _)| plan.place(x, y)).collect()
+    };
+    let mut outline = edge(&series.y);
+    outline.extend(edge(lower).into_iter().rev());
+    if outline.len() > 3 {
+        canvas.shade(&outline, color, BAND_OPACITY);
     }
 }
 
@@ -84,6 +103,17 @@ fn distance(a: (f64, f64), b: (f64, f64)) -> f64 {
 
 fn draw_error_bars(canvas: &mut Canvas, plan: &PanelPlan<'_>, idx: usize, series: &Series) {
     let stroke = Stroke::solid(series.color_at(idx), ERROR_WIDTH);
+    for ((&x, &y), &error) in series.x.iter().zip(&series.y).zip(series.x_error.iter().flatten()) {
+        let error = finite_or_zero(error);
+        let ends = (plan.place(x - error, y), plan.place(x + error, y));
+        let (Some((left, at)), Some((right, _))) = ends else { continue };
+        if error > 0.0 {
+            canvas.line((left, at), (right, at), stroke);
+            for end in [left, right] {
+                canvas.line((end, at - ERROR_CAP), (end, at + ERROR_CAP), stroke);
+            }
+        }
+    }
     let Some(errors) = &series.y_error else { return };
     for ((&x, &y), &error) in series.x.iter().zip(&series.y).zip(errors) {
         let error = finite_or_zero(error);

@@ -95,7 +95,9 @@ fn plan(figure: &Figure, legend_room: f64) -> Vec<PanelPlan<'_>> {
 
 fn x_axis(figure: &Figure, span: (f64, f64)) -> AxisPlan {
     let series = figure.panels.iter().flat_map(|panel| &panel.series);
-    let only_lines = series.clone().all(|s| matches!(s.style, super::Style::Line | super::Style::Dashed));
+    let only_lines = series
+        .clone()
+        .all(|s| matches!(s.style, super::Style::Line | super::Style::Dashed | super::Style::Band));
     // Profiles fill the width; markers must not touch the frame.
     let margin = if only_lines && !figure.x.log { 0.0 } else { MARGIN_X };
     let values = series.flat_map(|series| series.x.iter().copied());

@@ -131,6 +131,11 @@ impl Legend {
         let mut y = area.top + 0.6 * PADDING + 0.5 * ROW;
         for (idx, series) in panel.panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty()) {
             let x = area.left + PADDING;
+            if series.lower.is_some() {
+                let (left, right) = (x, x + SAMPLE);
+                let corners = [(left, y - 6.0), (right, y - 6.0), (right, y + 6.0), (left, y + 6.0)];
+                canvas.shade(&corners, series.color_at(idx), data::BAND_OPACITY);
+            }
             if let Some(stroke) = series.stroke(idx) {
                 canvas.line((x, y), (x + SAMPLE, y), stroke);
             }

@@ -75,6 +75,8 @@ pub enum Style {
     Points,
     /// Markers joined by a line; with error bars where the series has errors.
     LineWithPoints,
+    /// The area between y and the lower ends, in a light shade.
+    Band,
 }
 
 /// One curve or set of points.
@@ -90,13 +92,26 @@ pub struct Series {
     pub y: Vec<f64>,
     /// Half lengths of the error bars in y, if any.
     pub y_error: Option<Vec<f64>>,
+    /// Half lengths of the error bars in x, if any.
+    pub x_error: Option<Vec<f64>>,
+    /// Lower ends of a [`Style::Band`].
+    pub lower: Option<Vec<f64>>,
     /// Color; the next of [`Color::CYCLE`] if absent.
     pub color: Option<Color>,
 }
 
 impl Series {
     fn new(style: Style, label: &str, x: &[f64], y: &[f64]) -> Self {
-        Self { label: label.to_owned(), style, x: x.to_vec(), y: y.to_vec(), y_error: None, color: None }
+        Self {
+            label: label.to_owned(),
+            style,
+            x: x.to_vec(),
+            y: y.to_vec(),
+            y_error: None,
+            x_error: None,
+            lower: None,
+            color: None,
+        }
     }
 
     /// A solid line.
@@ -129,10 +144,22 @@ impl Series {
         Self::new(Style::LineWithPoints, label, x, y)
     }
 
+    /// A shaded area between two curves.
+    #[must_use]
+    pub fn band(label: &str, x: &[f64], low: &[f64], high: &[f64]) -> Self {
+        Self { lower: Some(low.to_vec()), ..Self::new(Style::Band, label, x, high) }
+    }
+
     /// The series with error bars of these half lengths.
     #[must_use]
     pub fn with_error(self, y_error: &[f64]) -> Self {
         Self { y_error: Some(y_error.to_vec()), ..self }
+    }
+
+    /// The series with error bars along x of these half lengths.
+    #[must_use]
+    pub fn with_x_error(self, x_error: &[f64]) -> Self {
+        Self { x_error: Some(x_error.to_vec()), ..self }
     }
 
     /// The series in a given color.
@@ -358,7 +385,8 @@ fn check_axis(axis: &Axis) -> Result<(), String> {
 fn check_series(series: &Series) -> Result<(), String> {
     let (n_x, n_y) = (series.x.len(), series.y.len());
     let n_error = series.y_error.as_ref().map_or(n_x, Vec::len);
-    if n_x == n_y && n_x == n_error {
+    let others = [&series.x_error, &series.lower];
+    if n_x == n_y && n_x == n_error && others.iter().all(|v| v.as_ref().is_none_or(|v| v.len() == n_x)) {
         return Ok(());
     }
     Err(format!("series `{}` has {n_x} x, {n_y} y and {n_error} errors", series.label))

@@ -22,6 +22,8 @@ pub struct Disorder {
     pub jitter: f64,
     /// Sweeps of the closure of faces; `None` leaves them open.
     pub sweeps: Option<u32>,
+    /// Keeps the density at that of the packing, or not.
+    pub volume_consistency: bool,
     /// Start of the random numbers.
     pub seed: u64,
 }
@@ -39,10 +41,12 @@ pub fn run(disorder: Disorder) -> Result<f64, ValidateError> {
     let domain = Domain::new([-half, 0.0].into(), [half, f64::from(ROWS) * size].into(), [false, true]);
     let mut particles = particles(disorder.n, &problem);
     shake(&mut particles, disorder.jitter * size, disorder.seed);
+    let usual = Settings::for_scheme(Scheme::TkcHancock);
     let settings = Settings {
         smoothing: SMOOTHING,
         face_closure: disorder.sweeps.map(|sweeps| FaceClosure { sweeps }),
-        ..Settings::for_scheme(Scheme::TkcHancock)
+        volume_consistency: usual.volume_consistency.filter(|_| disorder.volume_consistency),
+        ..usual
     };
     let mut run = Run::new(&case, Watch::silent(), domain, material, particles, settings)?;
     run.advance(DURATION)?;

@@ -52,6 +52,8 @@ pub struct Particle<D: Dimension> {
     pub relative_speed: f64,
     /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
     pub packing_excess: f64,
+    /// Volume sum that it is held against, where that is its own [-]; 0 where it has not been measured.
+    pub packing_reference: f64,
     /// Volume over the volume without the voids that tension has opened [-]; 1 where none has.
     pub distension: f64,
 }
@@ -74,6 +76,7 @@ impl<D: Dimension> Particle<D> {
             plastic_strain: 0.0,
             relative_speed: 0.0,
             packing_excess: 0.0,
+            packing_reference: 0.0,
             distension: 1.0,
         }
     }
@@ -110,6 +113,8 @@ pub struct Particles<D: Dimension> {
     pub relative_speed: Vec<f64>,
     /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
     pub packing_excess: Vec<f64>,
+    /// Volume sum that it is held against, where that is its own [-]; 0 where it has not been measured.
+    pub packing_reference: Vec<f64>,
     /// Volume over the volume without the voids that tension has opened [-]; 1 where none has.
     pub distension: Vec<f64>,
 }
@@ -131,6 +136,7 @@ impl<D: Dimension> Default for Particles<D> {
             plastic_strain: Vec::new(),
             relative_speed: Vec::new(),
             packing_excess: Vec::new(),
+            packing_reference: Vec::new(),
             distension: Vec::new(),
         }
     }
@@ -167,6 +173,7 @@ impl<D: Dimension> Particles<D> {
         self.plastic_strain.push(p.plastic_strain);
         self.relative_speed.push(p.relative_speed);
         self.packing_excess.push(p.packing_excess);
+        self.packing_reference.push(p.packing_reference);
         self.distension.push(p.distension);
     }
 
@@ -187,6 +194,7 @@ impl<D: Dimension> Particles<D> {
             plastic_strain: self.plastic_strain[i],
             relative_speed: self.relative_speed[i],
             packing_excess: self.packing_excess[i],
+            packing_reference: self.packing_reference[i],
             distension: self.distension[i],
         }
     }
@@ -223,6 +231,7 @@ impl<D: Dimension> Particles<D> {
         list.push(("plastic_strain".to_string(), &self.plastic_strain));
         list.push(("relative_speed".to_string(), &self.relative_speed));
         list.push(("packing_excess".to_string(), &self.packing_excess));
+        list.push(("packing_reference".to_string(), &self.packing_reference));
         list.push(("distension".to_string(), &self.distension));
         list
     }
@@ -235,7 +244,7 @@ impl<D: Dimension> Particles<D> {
         list.extend([&mut self.mass, &mut self.size, &mut self.density, &mut self.specific_internal_energy]);
         list.extend(self.deviator.as_mut());
         list.extend([&mut self.plastic_strain, &mut self.relative_speed, &mut self.packing_excess]);
-        list.push(&mut self.distension);
+        list.extend([&mut self.packing_reference, &mut self.distension]);
         list
     }
 
@@ -282,6 +291,7 @@ mod tests {
             plastic_strain: 0.0,
             relative_speed: x,
             packing_excess: -x,
+            packing_reference: 2.0 * x,
             distension: 1.0 + x,
         }
     }

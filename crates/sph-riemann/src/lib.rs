@@ -54,7 +54,7 @@ pub use error::{SetupError, StepError};
 pub use interventions::Interventions;
 pub use limiter::Limiter;
 pub use restart::Clock;
-pub use scheme::{FaceClosure, Scheme, Settings, SurfaceTreatment, VolumeConsistency};
+pub use scheme::{FaceClosure, PackingReference, Scheme, Settings, SurfaceTreatment, VolumeConsistency};
 pub use simulation::{Simulation, StepReport, Totals};
 pub use stage_times::{StageTimes, StepStage};
 pub use time_step::TimeStepReason;

@@ -76,11 +76,31 @@ pub struct VolumeConsistency {
     pub tolerance: f64,
     /// Deficit δ of the volume sum beyond which a particle lines a void and is left alone [-].
     pub void_deficit: f64,
+    /// Volume sum of a packing that fills space.
+    #[serde(default)]
+    pub reference: PackingReference,
+}
+
+/// What the volume sum of a particle is held against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PackingReference {
+    /// The sum of a perfect lattice.
+    #[default]
+    Lattice,
+    /// The particle's own sum when it was first measured: for disordered packings, whose sums scatter. Only for bodies
+    /// without voids at the start.
+    Start,
 }
 
 impl Default for VolumeConsistency {
     fn default() -> Self {
-        Self { width: 2.0, rate: 0.05, tolerance: 0.001, void_deficit: 0.1 }
+        Self {
+            width: 2.0,
+            rate: 0.05,
+            tolerance: 0.001,
+            void_deficit: 0.1,
+            reference: PackingReference::Lattice,
+        }
     }
 }
 

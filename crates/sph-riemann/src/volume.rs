@@ -8,7 +8,8 @@
 //! ```
 //!
 //! with S_lattice of the square lattice in the plane and of the cubic one in space (other lattices of the same density
-//! differ by 2.5e-4 at most), and until the next rebuild the density relaxes, besides the flow's own rate, with
+//! differ by 2.5e-4 at most). On a disordered packing the sums scatter by more than the tolerance; each particle may then
+//! be held against its own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next rebuild the density relaxes, besides the flow's own rate, with
 //!
 //! ```text
 //! d(ln ρ)/dt += κ (c/h)(ΔS - tol)                  where ΔS > tol
@@ -32,7 +33,7 @@ use sph_core::neighbors::cell_grid::CellSortedPoints;
 use sph_core::neighbors::{Halo, TILE};
 use sph_core::particles::{Constraint, Particles};
 
-use crate::scheme::VolumeConsistency;
+use crate::scheme::{PackingReference, VolumeConsistency};
 
 /// Fills the column `packing_excess` with ΔS, zero near imposed particles.
 pub fn measure<D: Dimension>(
@@ -63,11 +64,16 @@ pub fn measure<D: Dimension>(
     let lattice = lattice_volume_sum(perfect, settings.width, kernel);
     let sum = &VolumeSum { points: &points, position: &position, volume: &volume, imposed: &imposed, kernel };
     let (own, size) = (&particles.position, &particles.size);
-    particles.packing_excess.par_chunks_mut(TILE).enumerate().for_each(|(t, excess)| {
-        let first = t * TILE;
-        let tile = VolumeSumTile::<D> { sum, own, size, first, width: settings.width, lattice, excess };
-        dispatch_with(instructions, tile);
-    });
+    let (width, from_start) = (settings.width, settings.reference == PackingReference::Start);
+    let columns = particles.packing_excess.par_chunks_mut(TILE);
+    columns.zip(particles.packing_reference.par_chunks_mut(TILE)).enumerate().for_each(
+        |(t, (excess, reference))| {
+            let first = t * TILE;
+            let tile =
+                VolumeSumTile::<D> { sum, own, size, first, width, lattice, from_start, excess, reference };
+            dispatch_with(instructions, tile);
+        },
+    );
 }
 
 /// Where the filling of whole lanes stands [m]: beyond every support, and finite when squared.
@@ -88,7 +94,9 @@ struct VolumeSumTile<'a, D: Dimension> {
     first: usize,
     width: f64,
     lattice: f64,
+    from_start: bool,
     excess: &'a mut [f64],
+    reference: &'a mut [f64],
 }
 
 impl<D: Dimension> LaneKernel for VolumeSumTile<'_, D> {
@@ -100,7 +108,13 @@ impl<D: Dimension> LaneKernel for VolumeSumTile<'_, D> {
             let point = D::vector(|a| self.own[a][i]);
             let normalization = self.sum.kernel.normalization(D::COUNT) / h.powi(D::COUNT as i32);
             let (total, imposed) = self.sum.around::<L>(point, h);
-            *excess = if imposed > 0.0 { 0.0 } else { normalization * total - self.lattice };
+            let sum = normalization * total;
+            let unseen = self.from_start && imposed == 0.0 && self.reference[k] == 0.0;
+            if unseen {
+                self.reference[k] = sum;
+            }
+            let reference = if self.from_start { self.reference[k] } else { self.lattice };
+            *excess = if imposed > 0.0 { 0.0 } else { sum - reference };
         }
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{advance, simulation};
 use sph_core::{Dim2, Dim3, Vector};
-use sph_riemann::{Scheme, Settings, SolidDimension, SurfaceTreatment};
+use sph_riemann::{FaceClosure, Scheme, Settings, SolidDimension, SurfaceTreatment};
 
 fn closed_block_keeps_momentum_and_energy<D: SolidDimension>(cells: usize, steps: usize, settings: Settings) {
     let mut simulation = simulation::<D>(cells, 0.1, settings);
@@ -42,4 +42,11 @@ fn every_surface_treatment_conserves_momentum_and_energy() {
         let settings = Settings { surface, courant: 0.1, ..Settings::default() };
         closed_block_keeps_momentum_and_energy::<Dim2>(30, 150, settings);
     }
+}
+
+#[test]
+fn closed_faces_conserve_momentum_and_energy() {
+    let settings = Settings { face_closure: Some(FaceClosure::default()), ..Settings::default() };
+    closed_block_keeps_momentum_and_energy::<Dim2>(30, 150, settings);
+    closed_block_keeps_momentum_and_energy::<Dim3>(12, 60, settings);
 }

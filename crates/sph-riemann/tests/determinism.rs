@@ -4,12 +4,12 @@ mod common;
 
 use common::{advance, bits, simulation, with_every_set};
 use sph_core::{Dim2, Dim3, Vector};
-use sph_riemann::{Scheme, Settings, SolidDimension};
+use sph_riemann::{FaceClosure, Scheme, Settings, SolidDimension};
 
-fn bits_after<D: SolidDimension>(cells: usize, threads: usize) -> Vec<(u64, Vec<u64>)> {
+fn bits_after<D: SolidDimension>(cells: usize, threads: usize, settings: Settings) -> Vec<(u64, Vec<u64>)> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| {
-        let mut simulation = simulation::<D>(cells, 0.1, Settings::default());
+        let mut simulation = simulation::<D>(cells, 0.1, settings);
         advance(&mut simulation, 40);
         bits(simulation.particles())
     })
@@ -17,15 +17,22 @@ fn bits_after<D: SolidDimension>(cells: usize, threads: usize) -> Vec<(u64, Vec<
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    for threads in [2, 5] {
-        assert!(bits_after::<Dim2>(60, 1) == bits_after::<Dim2>(60, threads), "{threads} threads, plane");
-        assert!(bits_after::<Dim3>(14, 1) == bits_after::<Dim3>(14, threads), "{threads} threads, space");
+    let closed = Settings { face_closure: Some(FaceClosure::default()), ..Settings::default() };
+    for settings in [Settings::default(), closed] {
+        let plane = bits_after::<Dim2>(60, 1, settings);
+        let space = bits_after::<Dim3>(14, 1, settings);
+        for threads in [2, 5] {
+            assert!(plane == bits_after::<Dim2>(60, threads, settings), "{threads} threads, plane");
+            assert!(space == bits_after::<Dim3>(14, threads, settings), "{threads} threads, space");
+        }
     }
 }
 
 fn sets_agree<D: SolidDimension>(cells: usize) {
-    for scheme in Scheme::ALL {
-        let mut runs = with_every_set(|| simulation::<D>(cells, 0.1, Settings::for_scheme(scheme)));
+    let closed = Settings { face_closure: Some(FaceClosure::default()), ..Settings::default() };
+    for settings in Scheme::ALL.map(Settings::for_scheme).into_iter().chain([closed]) {
+        let scheme = settings.scheme;
+        let mut runs = with_every_set(|| simulation::<D>(cells, 0.1, settings));
         runs.iter_mut().for_each(|run| advance(run, 12));
         let reference = bits(runs[0].particles());
         for run in &runs[1..] {

@@ -23,7 +23,6 @@
 pub mod case;
 pub mod cli;
 pub mod conservation;
-pub mod disorder;
 pub mod error;
 pub mod gate;
 pub mod metric;

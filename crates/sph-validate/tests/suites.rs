@@ -93,3 +93,20 @@ fn figures_do_not_depend_on_what_runs_beside() {
     };
     assert_eq!(bits(1), bits(2));
 }
+
+#[test]
+fn disorder_of_a_tenth_with_faces_closed() {
+    gates_pass(&[Case::new("disorder", SchemeName::TkcHancock, 200).of_variant("closed-0.1")]);
+}
+
+#[test]
+fn spall_with_both_models_of_failure() {
+    let case = |variant| Case::new("spall", SchemeName::TkcHancock, 50).of_variant(variant);
+    gates_pass(&["cutoff", "voids"].map(case));
+}
+
+#[test]
+fn pores_collapse_at_both_speeds() {
+    let case = |variant| Case::new("collapse", SchemeName::TkcHancock, 20).of_variant(variant);
+    gates_pass(&["100", "300"].map(case));
+}

@@ -1,12 +1,12 @@
 //! The solid of a case: from the library with changes, or in full.
 
 use sph_materials::eos::MieGruneisen;
-use sph_materials::{EquationOfState, Failure, Material, SoundSpeedModel, Strength, library};
+use sph_materials::{EquationOfState, Failure, Material, SoundSpeedModel, Strength, VoidGrowth, library};
 
 use super::fault::{Fault, Span, name_hint};
 use super::field::Field;
 use super::resolve::Resolver;
-use super::schema::{LibrarySchema, MaterialSchema, SolidSchema};
+use super::schema::{FailureSchema, LibrarySchema, MaterialSchema, SolidSchema};
 
 /// Least and greatest modulus or strength that is accepted [Pa].
 const STRENGTH: (f64, f64) = (1.0, 1e13);
@@ -41,8 +41,10 @@ impl Resolver<'_> {
             Strength::Fluid | Strength::Elastic { .. } => None,
         };
         material.strength = strength(shear_modulus, yield_strength.or(known_yield));
-        if let Some(tensile_strength) = tensile_strength {
-            material.failure = Failure::TensileCutoff { tensile_strength };
+        let known = Some(material.failure.tensile_strength()).filter(|t| t.is_finite());
+        let unchanged = matches!((&m.tensile_strength, &m.tensile_failure), (Field::Absent, Field::Absent));
+        if !unchanged {
+            material.failure = self.failure(&m.tensile_failure, tensile_strength.or(known))?;
         }
         material.sound_speed = self.choice(&m.contact_sound_speed, SoundSpeedModel::Thermodynamic)?;
         Some(material)
@@ -71,10 +73,40 @@ impl Resolver<'_> {
                 gruneisen_coefficient: gruneisen_coefficient?,
             }),
             strength: strength(shear_modulus, yield_strength),
-            failure: tensile_strength
-                .map_or(Failure::None, |tensile_strength| Failure::TensileCutoff { tensile_strength }),
+            failure: self.failure(&m.tensile_failure, tensile_strength)?,
             sound_speed: self.choice(&m.contact_sound_speed, SoundSpeedModel::Thermodynamic)?,
         })
+    }
+
+    /// The failure model, from the strength [Pa] that is known.
+    fn failure(&self, field: &Field<FailureSchema>, tensile_strength: Option<f64>) -> Option<Failure> {
+        let (v, span) = match (field, tensile_strength) {
+            (Field::Bad(_), _) => return None,
+            (Field::Absent | Field::Good(FailureSchema::Cutoff, _), strength) => {
+                let cutoff = |tensile_strength| Failure::TensileCutoff { tensile_strength };
+                return Some(strength.map_or(Failure::None, cutoff));
+            }
+            (Field::Good(FailureSchema::VoidGrowth(v), span), _) => (v, span),
+        };
+        let usual = VoidGrowth::of_strength(tensile_strength.unwrap_or(1.0));
+        let initial_distension =
+            self.number(&v.initial_distension, usual.initial_distension, 1.0 + 1e-9, 1.2);
+        let viscosity = match v.viscosity {
+            Field::Absent => Some(usual.viscosity),
+            _ => self.quantity(&v.viscosity, 1e-6, 1e6),
+        };
+        let coalescence_porosity =
+            self.number(&v.coalescence_porosity, usual.coalescence_porosity, 0.2, 0.99);
+        if tensile_strength.is_none() {
+            let message = "growth of voids without a tensile strength".to_string();
+            self.refuse(span.clone(), message, "add `tensile_strength: …`, where growth begins");
+        }
+        Some(Failure::VoidGrowth(VoidGrowth {
+            tensile_strength: tensile_strength?,
+            initial_distension: initial_distension?,
+            viscosity: viscosity?,
+            coalescence_porosity: coalescence_porosity?,
+        }))
     }
 }
 

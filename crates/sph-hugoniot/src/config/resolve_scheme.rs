@@ -1,6 +1,6 @@
 //! How the equations are solved, and the moving window.
 
-use sph_riemann::{Scheme, Settings, SurfaceTreatment, VolumeConsistency};
+use sph_riemann::{FaceClosure, Scheme, Settings, SurfaceTreatment, VolumeConsistency};
 use sph_window::InletKind;
 
 use super::case::WindowCase;
@@ -18,6 +18,7 @@ impl Resolver<'_> {
         let skin = self.number(&s.skin, usual.skin, 0.0, 2.0);
         let surface = self.surface(&s.surface, usual.surface);
         let volume_consistency = self.volume_consistency(&s.volume_consistency, usual.volume_consistency);
+        let face_closure = self.face_closure(&s.face_closure);
         Some(Settings {
             limiter: limiter?,
             kernel: kernel?,
@@ -26,6 +27,7 @@ impl Resolver<'_> {
             skin: skin?,
             surface: surface?,
             volume_consistency: volume_consistency?,
+            face_closure: face_closure?,
             ..usual
         })
     }
@@ -69,7 +71,20 @@ impl Resolver<'_> {
             rate: rate?,
             tolerance: tolerance?,
             void_deficit: void_deficit?,
+            ..usual
         }))
+    }
+
+    fn face_closure(&self, field: &Field<FaceClosureSchema>) -> Option<Option<FaceClosure>> {
+        match field {
+            Field::Absent => Some(None),
+            Field::Bad(_) => None,
+            Field::Good(FaceClosureSchema::Off, _) => Some(None),
+            Field::Good(FaceClosureSchema::On(closure), _) => {
+                let sweeps = self.count(&closure.sweeps, u64::from(FaceClosure::default().sweeps), 2, 1000);
+                sweeps.map(|sweeps| Some(FaceClosure { sweeps: sweeps as u32 }))
+            }
+        }
     }
 
     pub(super) fn window(&self, w: &WindowSchema) -> Option<WindowCase> {

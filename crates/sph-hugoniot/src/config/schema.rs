@@ -8,7 +8,7 @@ use sph_materials::SoundSpeedModel;
 use sph_riemann::{Limiter, Scheme};
 
 use super::field::Field;
-use super::units::{Count, Density, Length, Number, Pressure, Velocity};
+use super::units::{Count, Density, Length, Number, Pressure, Velocity, Viscosity};
 
 /// The whole file.
 #[derive(Debug, Default, Deserialize)]
@@ -115,6 +115,8 @@ pub struct LibrarySchema {
     pub yield_strength: Field<Pressure>,
     /// Tensile strength T.
     pub tensile_strength: Field<Pressure>,
+    /// What happens beyond it.
+    pub tensile_failure: Field<FailureSchema>,
     /// Bulk sound speed of the contact.
     pub contact_sound_speed: Field<SoundSpeedModel>,
 }
@@ -139,8 +141,31 @@ pub struct SolidSchema {
     pub yield_strength: Field<Pressure>,
     /// Tensile strength T; without it unlimited.
     pub tensile_strength: Field<Pressure>,
+    /// What happens beyond it.
+    pub tensile_failure: Field<FailureSchema>,
     /// Bulk sound speed of the contact.
     pub contact_sound_speed: Field<SoundSpeedModel>,
+}
+
+/// What happens beyond the tensile strength.
+#[derive(Debug, Deserialize)]
+pub enum FailureSchema {
+    /// Neither tension nor shear until it is compressed again.
+    Cutoff,
+    /// Voids grow.
+    VoidGrowth(VoidGrowthSchema),
+}
+
+/// Parameters of the growth of voids.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct VoidGrowthSchema {
+    /// α0 of the voids that are there from the beginning.
+    pub initial_distension: Field<Number>,
+    /// η of the matrix.
+    pub viscosity: Field<Viscosity>,
+    /// φ_c at which voids meet.
+    pub coalescence_porosity: Field<Number>,
 }
 
 /// Cell, pores and particles.
@@ -207,6 +232,8 @@ pub struct SchemeSchema {
     pub skin: Field<Number>,
     /// Relaxation of the density towards the particles' packing.
     pub volume_consistency: Field<VolumeConsistencySchema>,
+    /// Closure of the faces between disordered particles.
+    pub face_closure: Field<FaceClosureSchema>,
 }
 
 /// What replaces L⁻¹ at free surfaces.
@@ -236,6 +263,23 @@ pub struct FloorSchema {
 pub struct CapSchema {
     /// c: largest eigenvalue of K.
     pub cap: Field<Number>,
+}
+
+/// Closure of the faces between disordered particles.
+#[derive(Debug, Deserialize)]
+pub enum FaceClosureSchema {
+    /// Faces as the pairs have them.
+    Off,
+    /// Closed.
+    On(ClosureSchema),
+}
+
+/// Effort of the closure.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ClosureSchema {
+    /// Sweeps in a step.
+    pub sweeps: Field<Count>,
 }
 
 /// Relaxation of the density towards the particles' packing.

@@ -51,6 +51,8 @@ kinds! {
         [("kg/m3", 1.0), ("kg/m^3", 1.0), ("kg/m³", 1.0), ("g/cm3", 1e3), ("g/cm^3", 1e3), ("g/cm³", 1e3), ("g/cc", 1e3)];
     /// Times [s].
     TimeKind, "time", "\"1.5 us\"", [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6), ("μs", 1e-6), ("ns", 1e-9)];
+    /// Dynamic viscosities [Pa s].
+    ViscosityKind, "viscosity", "\"10 Pa s\"", [("Pa s", 1.0), ("Pa*s", 1.0), ("poise", 0.1), ("kpoise", 100.0)];
 }
 
 /// A quantity in SI with the text as it was written.
@@ -69,6 +71,8 @@ pub type Pressure = Quantity<PressureKind>;
 pub type Velocity = Quantity<VelocityKind>;
 /// A mass density [kg/m³].
 pub type Density = Quantity<DensityKind>;
+/// A dynamic viscosity [Pa s].
+pub type Viscosity = Quantity<ViscosityKind>;
 /// A time [s].
 pub type Time = Quantity<TimeKind>;
 

@@ -9,6 +9,7 @@ pub const SIZE: f64 = 1e-6;
 
 /// A periodic block of `cells` particles along each axis with a round pore in the middle, jittered by `jitter` particle
 /// sizes, in a smooth motion of amplitude `speed` [m/s] with a total momentum that is not zero.
+#[allow(dead_code)] // Each test file compiles this module for itself.
 pub fn porous_block<D: SolidDimension>(cells: usize, jitter: f64, speed: f64) -> (Domain<D>, Particles<D>) {
     let length = cells as f64 * SIZE;
     let domain = Domain::new(D::vector(|_| 0.0), D::vector(|_| length), Components::from_fn(|_| true));
@@ -35,6 +36,7 @@ pub fn porous_block<D: SolidDimension>(cells: usize, jitter: f64, speed: f64) ->
 }
 
 /// The block as a simulation.
+#[allow(dead_code)] // As above.
 pub fn simulation<D: SolidDimension>(cells: usize, jitter: f64, settings: Settings) -> Simulation<D> {
     let copper = sph_materials::library::material("porous-copper").expect("a library material");
     let (domain, particles) = porous_block::<D>(cells, jitter, 100.0);

@@ -32,8 +32,11 @@
 //! suite. A suite draws no random number without a fixed seed: a run gives the same bits each time, on any number of
 //! threads.
 
+pub mod collapse;
+pub mod disorder;
 pub mod riemann;
 pub mod sound_wave;
+pub mod spall;
 pub mod verny;
 
 use sph_io::field_image::FieldImage;
@@ -46,7 +49,14 @@ use crate::plots;
 use crate::watch::Watch;
 
 /// All suites, in the order of the report.
-pub static ALL: &[&dyn Suite] = &[&riemann::Riemann, &sound_wave::SoundWave, &verny::Verny];
+pub static ALL: &[&dyn Suite] = &[
+    &riemann::Riemann,
+    &sound_wave::SoundWave,
+    &verny::Verny,
+    &disorder::Disorder,
+    &spall::Spall,
+    &collapse::Collapse,
+];
 
 /// A problem with a known answer.
 pub trait Suite: Sync {

@@ -35,7 +35,7 @@ pub(crate) const FROZEN_LAYERS: u32 = 5;
 const LEFT_STRESS: f64 = -4e9;
 
 /// Mean over the particles of |σ_xx - exact|.
-const STRESS_L1: Metric = Metric::norm("stress_l1", "GPa");
+pub(crate) const STRESS_L1: Metric = Metric::norm("stress_l1", "GPa");
 /// Shifts of the four waves, from left to right.
 const SHIFTS: [Metric; 4] = [
     Metric::value("elastic_release_shift", "mm"),
@@ -177,13 +177,13 @@ pub(crate) fn particles(n: u32, problem: &Problem) -> Particles<Dim2> {
 }
 
 /// Place x [m] and stress σ_xx [Pa] of the particles of the domain.
-fn stresses(run: &Run<'_, Dim2>) -> Vec<(f64, f64)> {
+pub(crate) fn stresses(run: &Run<'_, Dim2>) -> Vec<(f64, f64)> {
     let particles = run.simulation.particles();
     let free = (0..particles.len()).filter(|&i| particles.constraint[i] == Constraint::Free);
     free.map(|i| (particles.position[0][i], run.simulation.stress(i)[0])).collect()
 }
 
-fn stress_error(stresses: &[(f64, f64)], solution: &Solution) -> Measurement {
+pub(crate) fn stress_error(stresses: &[(f64, f64)], solution: &Solution) -> Measurement {
     let pairs = stresses.iter().map(|&(x, stress)| (stress, solution.sample(x / DURATION).stress));
     Measurement::error_of(STRESS_L1, 1e-9 * mean_absolute_difference(pairs))
 }

@@ -16,7 +16,7 @@ const CASE: &str = r#"Case(
 /// Runs the point and prints what it gave.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let case = config::parse(CASE, "one_point.rs")?;
-    let sample = microstructure::sample(&case.medium, case.material.reference_density);
+    let sample = microstructure::sample(&case);
     println!("{} particles a cell, m = {:.4}", sample.particles.len(), sample.porosity);
 
     let outcome = point::run(&case, &sample, case.points[0], &point::Unwatched);

@@ -1,13 +1,21 @@
 //! `hugoniot check`: what a case file resolves to, before anything is run.
 
 use std::fmt::Write;
+use std::path::Path;
+use std::path::PathBuf;
 
 use serde::Serialize;
 
+use sph_materials::Material;
+
 use crate::config::Case;
+use crate::config::case::Pores;
 use crate::config::units::{LengthKind, PressureKind, VelocityKind, show, significant};
 use crate::estimate::{self, PointEstimate};
-use crate::microstructure::{self, Sample};
+use crate::microstructure::layout::{Base, Fill};
+use crate::microstructure::measure::{self, Features};
+use crate::microstructure::relax::Uniformity;
+use crate::microstructure::{self, Sample, picture};
 
 /// A resolved case with what its run will need.
 #[derive(Debug, Serialize)]
@@ -20,7 +28,18 @@ pub struct Check {
     pub bulk_density: f64,
     /// Particles in a cell.
     pub particles_per_cell: usize,
-    /// Distance from a pore's center of the farthest point removed [m]; `None` without pores.
+    /// Particles of each material in a cell.
+    pub particles_by_material: Vec<(String, usize)>,
+    /// What the sample resolves, in particle sizes.
+    pub features: Features,
+    /// How well a relaxed packing fills space.
+    pub uniformity: Option<Uniformity>,
+    /// What to be warned of.
+    pub warnings: Vec<String>,
+    /// The picture of the sample, if it was drawn.
+    pub picture: Option<PathBuf>,
+    /// Of the farthest point removed: distance from its pore's center on a lattice, else from the voids' boundary [m];
+    /// `None` without voids.
     pub cut_radius: Option<f64>,
     /// What each point will need.
     pub points: Vec<PointEstimate>,
@@ -35,19 +54,38 @@ pub struct Check {
 impl Check {
     /// Resolves the case further: sample, particles, memory, time on `threads` cores.
     pub fn new(case: Case, threads: usize) -> Self {
-        let sample: Sample = microstructure::sample(&case.medium, case.material.reference_density);
+        let sample: Sample = microstructure::sample(&case);
         let points: Vec<_> = case.points.iter().map(|&u| estimate::point(&case, &sample, u)).collect();
+        let names: Vec<String> = case.materials().into_iter().map(|m| m.name).collect();
+        let features = measure::features(&case.medium);
         let (expected_seconds, expected_bytes) = estimate::total(&points, threads);
         Self {
             porosity_reached: sample.porosity,
             bulk_density: sample.bulk_density(),
             particles_per_cell: sample.particles.len(),
-            cut_radius: (sample.cut.0 > 0.0).then_some(sample.cut.0),
+            particles_by_material: names.into_iter().zip(sample.counts.iter().copied()).collect(),
+            warnings: measure::warnings(&case.medium, &sample, &features),
+            features,
+            uniformity: sample.uniformity,
+            picture: None,
+            cut_radius: sample.cut.0.is_finite().then_some(sample.cut.0),
             points,
             threads,
             expected_seconds,
             expected_bytes,
             case,
+        }
+    }
+
+    /// Draws the sample into a PNG file and names it; a picture that cannot be written is a warning.
+    pub fn draw(&mut self, path: &Path) {
+        let written = path.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|e| e.to_string());
+        let sample = microstructure::sample(&self.case);
+        let written =
+            written.and_then(|()| picture::write(&self.case, &sample, path).map_err(|e| e.to_string()));
+        match written {
+            Ok(()) => self.picture = Some(path.to_path_buf()),
+            Err(reason) => self.warnings.push(format!("no picture of the sample: {reason}")),
         }
     }
 
@@ -57,8 +95,7 @@ impl Check {
         let mut line = |name: &str, text: String| _ = writeln!(out, "{name:<20} {text}");
         line("case", self.case.name.clone());
         line("material", self.material_text());
-        let pores = format!("{:?}, radius {}", medium.pores, show::<LengthKind>(medium.radius));
-        line("medium", format!("cell {}, pores {pores}", show::<LengthKind>(medium.cell)));
+        line("medium", self.medium_text());
         let (wanted, reached) = (significant(medium.porosity), significant(self.porosity_reached));
         line(
             "porosity",
@@ -67,11 +104,11 @@ impl Check {
                 significant(self.bulk_density)
             ),
         );
-        let size = show::<LengthKind>(medium.particle_size);
-        line(
-            "particles",
-            format!("D = {size}, {:?} packing, {} a cell", medium.packing, self.particles_per_cell),
-        );
+        line("particles", self.particles_text());
+        line("voids", self.features_text());
+        if let Some(u) = self.uniformity {
+            line("relaxed", relaxed_text(&u));
+        }
         let volume = if scheme.volume_consistency.is_some() { "on" } else { "off" };
         line(
             "scheme",
@@ -93,15 +130,66 @@ impl Check {
         }
         let time = duration(self.expected_seconds);
         let memory = significant((self.expected_bytes / 1e5).round() / 10.0);
+        if let Some(path) = &self.picture {
+            _ = writeln!(out, "\npicture of the sample: {}", path.display());
+        }
+        for warning in &self.warnings {
+            _ = writeln!(out, "warning: {warning}");
+        }
         _ = writeln!(out, "\nabout {time} on {} core(s), {memory} MB; estimates", self.threads);
         out
     }
 
     fn material_text(&self) -> String {
-        let m = &self.case.material;
-        let speed = m.longitudinal_sound_speed(m.reference_density, 0.0);
-        let (shear, c_l) = (show::<PressureKind>(m.strength.shear_modulus()), show::<VelocityKind>(speed));
-        format!("{}, {} kg/m3, G = {shear}, c_l = {c_l}", m.name, significant(m.reference_density))
+        let text = |m: Material| {
+            let speed = m.longitudinal_sound_speed(m.reference_density, 0.0);
+            let (shear, c_l) =
+                (show::<PressureKind>(m.strength.shear_modulus()), show::<VelocityKind>(speed));
+            format!("{}, {} kg/m3, G = {shear}, c_l = {c_l}", m.name, significant(m.reference_density))
+        };
+        self.case.materials().into_iter().map(text).collect::<Vec<_>>().join("\n                     ")
+    }
+
+    fn medium_text(&self) -> String {
+        let medium = &self.case.medium;
+        let cell =
+            format!("cell {} × {}", show::<LengthKind>(medium.cell), show::<LengthKind>(medium.height));
+        let picture = match &medium.layout.base {
+            Base::Image(image) => {
+                format!(", {} ({} × {} pixels)", image.file, image.pixels.0, image.pixels.1)
+            }
+            Base::Uniform(_) => String::new(),
+        };
+        let pores = match medium.pores {
+            Pores::None => String::new(),
+            Pores::Placed => ", pores at random".into(),
+            lattice => format!(", pores {lattice:?}, radius {}", show::<LengthKind>(medium.radius)),
+        };
+        let painted = medium.layout.painted.iter().filter(|p| p.fill != Fill::Void).count();
+        let inclusions =
+            if painted > 0 { format!(", {painted} inclusions or layers") } else { String::new() };
+        cell + &picture + &pores + &inclusions
+    }
+
+    fn particles_text(&self) -> String {
+        let medium = &self.case.medium;
+        let size = show::<LengthKind>(medium.particle_size);
+        let head = format!("D = {size}, {:?} packing, {} a cell", medium.packing, self.particles_per_cell);
+        if self.particles_by_material.len() < 2 {
+            return head;
+        }
+        let parts = self.particles_by_material.iter().map(|(name, count)| format!("{count} {name}"));
+        format!("{head}: {}", parts.collect::<Vec<_>>().join(", "))
+    }
+
+    fn features_text(&self) -> String {
+        let width = |w: Option<f64>| w.map_or("none".to_string(), |w| format!("{w:.1} D"));
+        let f = &self.features;
+        if f.pores == 0 {
+            return "none".into();
+        }
+        let (gap, pore) = (width(f.smallest_gap), width(f.smallest_pore));
+        format!("{} pores a cell; smallest gap between them {gap}, smallest pore {pore}", f.pores)
     }
 
     fn points_text(&self) -> String {
@@ -123,6 +211,16 @@ impl Check {
         }
         out
     }
+}
+
+fn relaxed_text(u: &Uniformity) -> String {
+    format!(
+        "volume sums within {:.2} % of their mean, {:.2} % before; surface within {:.2} D of the boundary, {:.2} D before",
+        100.0 * u.relaxed,
+        100.0 * u.jittered,
+        u.surface.1,
+        u.surface.0
+    )
 }
 
 /// A duration as people say it.

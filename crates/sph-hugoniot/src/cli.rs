@@ -74,6 +74,9 @@ pub enum Command {
         /// Cores that the time is estimated for; default: all
         #[arg(long, value_name = "N")]
         threads: Option<usize>,
+        /// PNG file for the picture of the sample; default: sample.png in the case's folder of results
+        #[arg(long, value_name = "FILE")]
+        picture: Option<PathBuf>,
     },
     /// Run the points of a case; results go into its folder
     #[command(
@@ -174,7 +177,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
     sph_io::progress::set_color(color);
     match arguments.command {
         Command::Init { template } => Ok(init(template.as_deref())),
-        Command::Check { case, json, threads } => check_case(&case, json, threads, color),
+        Command::Check { case, json, threads, picture } => check_case(&case, json, threads, picture, color),
         Command::Run { case, up, out, threads, resume, replace, keep_every, quiet, json } => {
             let earlier = match (resume, replace) {
                 (true, _) => Earlier::Resume,
@@ -248,13 +251,21 @@ fn show_status(folder: &Path, json: bool) -> anyhow::Result<u8> {
     Ok(SUCCESS)
 }
 
-fn check_case(path: &Path, json: bool, threads: Option<usize>, color: bool) -> anyhow::Result<u8> {
+fn check_case(
+    path: &Path,
+    json: bool,
+    threads: Option<usize>,
+    picture: Option<PathBuf>,
+    color: bool,
+) -> anyhow::Result<u8> {
     let Some(case) = load(path, color) else { return Ok(BAD_INPUT) };
     if let Err(error) = load_data(&case) {
         eprintln!("error: {error}");
         return Ok(BAD_INPUT);
     }
-    let check = check::Check::new(case, threads.unwrap_or_else(available_threads).max(1));
+    let picture = picture.unwrap_or_else(|| Path::new(&case.output.directory).join("sample.png"));
+    let mut check = check::Check::new(case, threads.unwrap_or_else(available_threads).max(1));
+    check.draw(&picture);
     if json {
         println!("{}", serde_json::to_string_pretty(&check)?);
     } else {

@@ -126,7 +126,7 @@ impl<'c> Point<'c> {
     fn new(case: &'c Case, sample: &'c Sample, particle_velocity: f64) -> Result<Self, WindowError> {
         let feed = setup::feed_sample(sample)?;
         let settings = setup::window_settings(case, particle_velocity);
-        let window = Window::new(feed, vec![case.material.clone()], case.scheme, settings)?;
+        let window = Window::new(feed, case.materials(), case.scheme, settings)?;
         Ok(Self { case, sample, particle_velocity, window, progress: PointProgress::default() })
     }
 

@@ -22,9 +22,12 @@ pub fn published_fit(particle_velocity: f64) -> f64 {
 /// True for the medium that the published fit belongs to.
 pub fn is_published_medium(case: &Case) -> bool {
     let medium = &case.medium;
-    medium.pores == Pores::CenteredSquare
+    case.single_material().is_some()
+        && medium.pores == Pores::CenteredSquare
+        && !medium.has_other_voids()
         && (medium.porosity - 1.35).abs() < 0.005
         && (medium.cell - 20e-6).abs() < 1e-9
+        && (medium.height - 20e-6).abs() < 1e-9
         && case.material.name == "porous-copper"
 }
 

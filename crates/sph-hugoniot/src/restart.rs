@@ -166,7 +166,7 @@ impl Keeper {
         let saved = loaded.checkpoint.header;
         let window = Window::restore(
             setup::feed_sample(sample)?,
-            vec![case.material.clone()],
+            case.materials(),
             case.scheme,
             setup::window_settings(case, u_p),
             saved.window,

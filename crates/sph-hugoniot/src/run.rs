@@ -84,7 +84,7 @@ impl RunEnd {
 /// Runs all points of a case. `interrupt` is looked at after each step.
 pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
     let (started, began) = (Instant::now(), SystemTime::now());
-    let sample = microstructure::sample(&case.medium, case.material.reference_density);
+    let sample = microstructure::sample(case);
     std::fs::create_dir_all(&options.folder)
         .with_context(|| format!("{}: the folder cannot be made", options.folder.display()))?;
     let _lock = match FolderLock::acquire(&options.folder) {

@@ -13,7 +13,7 @@ use crate::microstructure::Sample;
 pub fn feed_sample(sample: &Sample) -> Result<FeedSample<Dim2>, WindowError> {
     let mut particles = Particles::default();
     sample.particles.iter().for_each(|&p| particles.push(p));
-    let cell = Domain::new(DVec2::ZERO, DVec2::splat(sample.cell), [true, true]);
+    let cell = Domain::new(DVec2::ZERO, DVec2::new(sample.cell, sample.height), [true, true]);
     FeedSample::new(particles, cell)
 }
 

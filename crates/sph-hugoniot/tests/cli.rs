@@ -19,7 +19,11 @@ fn init_writes_a_case_that_check_accepts() {
         let output = hugoniot().args(["init", template]).assert().success().get_output().stdout.clone();
         let path = folder.path().join(format!("{template} ä.ron"));
         std::fs::write(&path, output).unwrap();
-        hugoniot().arg("check").arg(&path).assert().success();
+        hugoniot().current_dir(folder.path()).arg("check").arg(&path).assert().success();
+        assert!(
+            folder.path().join(format!("results/{template}/sample.png")).exists(),
+            "the picture of the sample"
+        );
     }
 }
 
@@ -40,8 +44,15 @@ fn check_tells_what_a_case_resolves_to() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("case.ron");
     std::fs::write(&path, sph_hugoniot::template::text("porous-copper").unwrap()).unwrap();
-    let output =
-        hugoniot().args(["check", "--json"]).arg(&path).assert().success().get_output().stdout.clone();
+    let output = hugoniot()
+        .current_dir(folder.path())
+        .args(["check", "--json"])
+        .arg(&path)
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
     let value: serde_json::Value = serde_json::from_slice(&output).unwrap();
     assert_eq!(value["particles_per_cell"], 296);
     let reached = value["porosity_reached"].as_f64().unwrap();

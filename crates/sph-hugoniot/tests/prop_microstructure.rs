@@ -1,8 +1,9 @@
 //! Samples at random: porosity as near as whole shells allow, mass exact, the pores of a cell alike.
 
+use glam::DVec2;
 use proptest::prelude::*;
 use sph_hugoniot::config::case::{Medium, Packing, Pores};
-use sph_hugoniot::microstructure::sample;
+use sph_hugoniot::microstructure::build;
 
 fn medium() -> impl Strategy<Value = Medium> {
     let pores = prop_oneof![Just(Pores::Square), Just(Pores::CenteredSquare)];
@@ -12,7 +13,7 @@ fn medium() -> impl Strategy<Value = Medium> {
         let cell = 20e-6;
         let solid = 1.0 - 1.0 / porosity;
         let radius = cell * (solid / (pores.count() as f64 * std::f64::consts::PI)).sqrt();
-        Medium { cell, pores, radius, porosity, particle_size: cell / (2 * half) as f64, packing }
+        Medium::with_lattice(DVec2::splat(cell), pores, radius, porosity, cell / (2 * half) as f64, packing)
     })
 }
 
@@ -21,7 +22,7 @@ proptest! {
 
     #[test]
     fn porosity_is_met_within_a_shell(medium in medium()) {
-        let sample = sample(&medium, 8960.0);
+        let sample = build(&medium, &[8960.0]);
         let lattice = sample.particles.len() as f64 * sample.porosity;
         let wanted = lattice / medium.porosity;
         // A shell of a pore has at most 16 points here; half of it is missed at worst.
@@ -31,7 +32,7 @@ proptest! {
 
     #[test]
     fn mass_and_order_are_exact(medium in medium()) {
-        let sample = sample(&medium, 8960.0);
+        let sample = build(&medium, &[8960.0]);
         let mass: f64 = sample.particles.iter().map(|p| p.mass).sum();
         prop_assert!((mass / (medium.cell * medium.cell) / sample.bulk_density() - 1.0).abs() < 1e-12);
         prop_assert!(sample.particles.is_sorted_by(|a, b| a.position.x <= b.position.x));
@@ -41,7 +42,7 @@ proptest! {
     #[test]
     fn the_two_pores_of_a_cell_are_alike(medium in medium()) {
         prop_assume!(medium.pores == Pores::CenteredSquare && medium.packing == Packing::Square);
-        let sample = sample(&medium, 8960.0);
+        let sample = build(&medium, &[8960.0]);
         let lower = sample.particles.iter().filter(|p| p.position.x < 0.5 * medium.cell).count();
         prop_assert_eq!(2 * lower, sample.particles.len());
     }

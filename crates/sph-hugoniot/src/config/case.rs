@@ -7,13 +7,17 @@ use sph_materials::Material;
 use sph_riemann::Settings;
 use sph_window::InletKind;
 
+pub use super::medium::{Medium, Packing, Pores};
+
 /// A case that can be run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Case {
     /// What it is called in reports.
     pub name: String,
-    /// The solid between the pores.
+    /// The solid between the pores; with several materials the first.
     pub material: Material,
+    /// Further materials; particles name them from 1 on.
+    pub further_materials: Vec<Material>,
     /// Cell, pores and particles.
     pub medium: Medium,
     /// How the equations are solved.
@@ -55,60 +59,16 @@ pub enum DataSource {
     },
 }
 
-/// Cell, pores and particles.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Medium {
-    /// Edge L of the square periodic cell [m].
-    pub cell: f64,
-    /// Where the pores are.
-    pub pores: Pores,
-    /// Pore radius as given, or as the porosity asks for [m]; zero without pores.
-    pub radius: f64,
-    /// Porosity m = ρ0/ρ00 to reach [-]; 1 without pores.
-    pub porosity: f64,
-    /// Particle size D [m].
-    pub particle_size: f64,
-    /// How particles are packed.
-    pub packing: Packing,
-}
-
-/// Where the pores are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Pores {
-    /// No pores: the solid.
-    None,
-    /// One pore a cell.
-    Square,
-    /// Two pores a cell: one more in the middle of four.
-    CenteredSquare,
-}
-
-impl Pores {
-    /// Pores in a cell.
-    pub fn count(self) -> usize {
-        match self {
-            Pores::None => 0,
-            Pores::Square => 1,
-            Pores::CenteredSquare => 2,
-        }
+impl Case {
+    /// All materials, in the order of the particles' indices.
+    pub fn materials(&self) -> Vec<Material> {
+        std::iter::once(&self.material).chain(&self.further_materials).cloned().collect()
     }
 
-    /// Least distance between pore centers, in cell edges.
-    pub fn spacing(self) -> f64 {
-        match self {
-            Pores::None | Pores::Square => 1.0,
-            Pores::CenteredSquare => std::f64::consts::FRAC_1_SQRT_2,
-        }
+    /// The material if there is but one: theory of one solid with pores then holds.
+    pub fn single_material(&self) -> Option<&Material> {
+        self.further_materials.is_empty().then_some(&self.material)
     }
-}
-
-/// How particles are packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Packing {
-    /// On a square lattice.
-    Square,
-    /// On a hexagonal lattice.
-    Hexagonal,
 }
 
 /// The moving window.

@@ -7,12 +7,16 @@
 pub mod case;
 pub mod fault;
 pub mod field;
+pub mod medium;
 pub mod node;
 pub mod resolve;
+mod resolve_layout;
 mod resolve_material;
+mod resolve_medium;
 mod resolve_points;
 mod resolve_scheme;
 pub mod schema;
+pub mod schema_medium;
 pub mod syntax;
 pub mod tree;
 pub mod units;
@@ -54,13 +58,13 @@ pub fn load(path: &Path) -> Result<Case, CaseError> {
     Ok(case)
 }
 
-/// Reads a case from text; `path` stands in the messages.
+/// Reads a case from text; `path` stands in the messages, and files that the case names are looked for beside it.
 pub fn parse(text: &str, path: &str) -> Result<Case, CaseError> {
     let faults = fault::Faults::default();
     let root = syntax::parse(text, &faults);
     let case = root.as_ref().and_then(|tree| {
         let schema: schema::CaseSchema = tree::read(tree, &faults)?;
-        resolve::resolve(&schema, &tree.span, &faults)
+        resolve::resolve(&schema, &tree.span, Path::new(path).parent().unwrap_or(Path::new("")), &faults)
     });
     match case {
         Some(case) if faults.is_empty() => Ok(case),

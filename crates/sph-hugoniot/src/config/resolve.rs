@@ -1,10 +1,13 @@
 //! Schema → case: required fields, defaults, ranges, and what fields must hold together. All faults are noted.
 
+use std::path::Path;
+
 use super::case::*;
 use super::fault::{Fault, Faults, Span};
 use super::field::Field;
+use super::resolve_medium::Surroundings;
 use super::schema::*;
-use super::units::{Count, Kind, LengthKind, Number, Quantity, show, significant};
+use super::units::{Count, Kind, Number, Quantity, show, significant};
 
 /// Most particles that a window may hold: about 100 GB, beyond any machine that this program is made for.
 pub const MAX_PARTICLES: f64 = 1e8;
@@ -13,15 +16,19 @@ pub const MAX_PARTICLES: f64 = 1e8;
 pub const PARTICLE_VELOCITIES: (f64, f64) = (1.0, 3000.0);
 
 /// Turns what was written into a case; `None` when a fault was noted, here or before.
-pub fn resolve(schema: &CaseSchema, whole: &Span, faults: &Faults) -> Option<Case> {
+///
+/// Files that the case names are looked for in `folder`.
+pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults) -> Option<Case> {
     let r = Resolver { faults };
     let name = schema.name.required("name", whole, faults).cloned();
-    let material = schema
-        .material
-        .required("material", whole, faults)
-        .and_then(|m| r.material(m, &span_of(&schema.material)));
-    let medium =
-        schema.medium.required("medium", whole, faults).and_then(|m| r.medium(m, &span_of(&schema.medium)));
+    let materials = r.materials(schema, whole);
+    let names: Option<Vec<String>> =
+        materials.as_ref().map(|list| list.iter().map(|m| m.name.clone()).collect());
+    let surroundings = Surroundings { materials: names.as_deref(), folder };
+    let medium = schema
+        .medium
+        .required("medium", whole, faults)
+        .and_then(|m| r.medium(m, &span_of(&schema.medium), surroundings));
     let points =
         schema.points.required("points", whole, faults).and_then(|p| r.points(p, &span_of(&schema.points)));
     let data = r.data(&schema.data);
@@ -36,9 +43,11 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, faults: &Faults) -> Option<Cas
     if let (Some(window), Some(points), Some(stop)) = (&window, &points, &stop) {
         r.points_can_settle(schema, window, points, stop);
     }
+    let mut materials = materials?.into_iter();
     let case = Case {
         name: name?,
-        material: material?,
+        material: materials.next()?,
+        further_materials: materials.collect(),
         medium: medium?,
         scheme: scheme?,
         window: window?,
@@ -136,120 +145,6 @@ impl Resolver<'_> {
         }
     }
 
-    fn medium(&self, m: &MediumSchema, group: &Span) -> Option<Medium> {
-        let cell = self.needed(&m.cell, "cell", group, 1e-9, 1.0);
-        let particle_size = self.needed(&m.particle_size, "particle_size", group, 1e-10, 1.0);
-        let packing = match self.choice(&m.packing, PackingSchema::Square)? {
-            PackingSchema::Square => Packing::Square,
-            PackingSchema::Hexagonal => Packing::Hexagonal,
-        };
-        let porosity = self.number(&m.porosity, 1.0, 1.0, 20.0);
-        m.pores.required("pores", group, self.faults);
-        if let (Some(cell), Some(size)) = (cell, particle_size) {
-            self.whole_particles(cell, size, m);
-        }
-        let (pores, radius) = self.pores(m, cell?, porosity?, particle_size?)?;
-        let porosity = if matches!(m.porosity, Field::Absent) {
-            geometric_porosity(pores, radius, cell?)
-        } else {
-            porosity?
-        };
-        Some(Medium { cell: cell?, pores, radius, porosity, particle_size: particle_size?, packing })
-    }
-
-    /// The cell must hold a whole number of particles along each edge: the sample repeats without a seam.
-    fn whole_particles(&self, cell: f64, size: f64, m: &MediumSchema) {
-        let n = cell / size;
-        let (few, many) = (4.0, 4000.0);
-        let span = span_of(&m.particle_size);
-        if !(few..=many).contains(&n) {
-            let message = format!(
-                "{} gives {} particles along the cell's edge",
-                show::<LengthKind>(size),
-                significant(n)
-            );
-            return self.refuse(span, message, &format!("from {few} to {many}"));
-        }
-        if (n - n.round()).abs() > 1e-6 * n {
-            let message = format!(
-                "{} does not divide the cell's edge {}",
-                show::<LengthKind>(size),
-                show::<LengthKind>(cell)
-            );
-            let hint = format!(
-                "nearest: {} or {}",
-                show::<LengthKind>(cell / n.ceil()),
-                show::<LengthKind>(cell / n.floor())
-            );
-            return self.refuse(span, message, &hint);
-        }
-        if n.round() % 2.0 != 0.0 && matches!(m.pores.get(), Some(PoresSchema::CenteredSquare(_))) {
-            let message =
-                format!("{} particles along the edge: the two pores of a cell would differ", n.round());
-            self.refuse(
-                span,
-                message,
-                &format!("an even number, such as {}", show::<LengthKind>(cell / (n.round() + 1.0))),
-            );
-        }
-    }
-
-    /// Lattice and radius; radius and porosity may each be left out, and must agree when both are given.
-    fn pores(&self, m: &MediumSchema, cell: f64, porosity: f64, size: f64) -> Option<(Pores, f64)> {
-        let (pores, pore) = match m.pores.get()? {
-            PoresSchema::None => {
-                if porosity > 1.0 {
-                    self.refuse(
-                        span_of(&m.porosity),
-                        format!("{porosity} is asked for without pores"),
-                        "leave it out, or add pores",
-                    );
-                }
-                return Some((Pores::None, 0.0));
-            }
-            PoresSchema::Square(pore) => (Pores::Square, pore),
-            PoresSchema::CenteredSquare(pore) => (Pores::CenteredSquare, pore),
-        };
-        let wanted =
-            (cell * cell * (1.0 - 1.0 / porosity) / (pores.count() as f64 * std::f64::consts::PI)).sqrt();
-        let given = self.quantity(&pore.radius, 0.0, cell);
-        let span = pore.radius.span().or(m.porosity.span()).unwrap_or_else(|| span_of(&m.pores));
-        if matches!(pore.radius, Field::Absent) && matches!(m.porosity, Field::Absent) {
-            self.refuse(
-                span_of(&m.pores),
-                "neither radius nor porosity is given".into(),
-                "radius: \"4.06 um\", or porosity: 1.35",
-            );
-            return None;
-        }
-        let radius = if matches!(pore.radius, Field::Absent) { wanted } else { given? };
-        let largest = 0.5 * pores.spacing() * cell - size;
-        if radius > largest {
-            let message = format!("pores of radius {} touch or overlap", show::<LengthKind>(radius));
-            self.refuse(
-                span,
-                message,
-                &format!("at most {}: half the distance less one particle", show::<LengthKind>(largest)),
-            );
-            return None;
-        }
-        if matches!(m.porosity, Field::Good(..)) && (radius - wanted).abs() > 0.03 * wanted + 0.5 * size {
-            let found = geometric_porosity(pores, radius, cell);
-            let message = format!(
-                "radius {} gives porosity {}, not {porosity}",
-                show::<LengthKind>(radius),
-                significant(found)
-            );
-            self.refuse(
-                span,
-                message,
-                &format!("leave one out, or use radius {}", show::<LengthKind>(wanted)),
-            );
-            return None;
-        }
-        Some((pores, radius))
-    }
-
     fn stop(&self, s: &StopSchema) -> Option<Stop> {
         let startup_cells = match &s.startup_cells {
             Field::Bad(_) => None,
@@ -293,8 +188,8 @@ impl Resolver<'_> {
     /// The longest window fits into memory and leaves room between its regions.
     fn window_fits(&self, schema: &CaseSchema, medium: &Medium, window: &WindowCase, points: &[f64]) {
         let longest = points.iter().map(|&u| window.cells_at(u)).max().unwrap_or(0);
-        let along = medium.cell / medium.particle_size;
-        let particles = longest as f64 * along * along;
+        let (along, across) = (medium.cell / medium.particle_size, medium.height / medium.particle_size);
+        let particles = longest as f64 * along * across;
         let length = schema.window.get().and_then(|w| w.length.span());
         let span = length.unwrap_or_else(|| span_of(&schema.medium));
         if particles > MAX_PARTICLES {
@@ -326,9 +221,4 @@ impl Resolver<'_> {
             );
         }
     }
-}
-
-/// Porosity of a cell with circular pores.
-fn geometric_porosity(pores: Pores, radius: f64, cell: f64) -> f64 {
-    1.0 / (1.0 - pores.count() as f64 * std::f64::consts::PI * radius * radius / (cell * cell))
 }

@@ -5,13 +5,56 @@ use sph_materials::{EquationOfState, Failure, Material, SoundSpeedModel, Strengt
 
 use super::fault::{Fault, Span, name_hint};
 use super::field::Field;
-use super::resolve::Resolver;
-use super::schema::{FailureSchema, LibrarySchema, MaterialSchema, SolidSchema};
+use super::resolve::{Resolver, span_of};
+use super::schema::{CaseSchema, FailureSchema, LibrarySchema, MaterialSchema, SolidSchema};
 
 /// Least and greatest modulus or strength that is accepted [Pa].
 const STRENGTH: (f64, f64) = (1.0, 1e13);
 
+/// Most materials of a case.
+const MOST: usize = 16;
+
 impl Resolver<'_> {
+    /// The materials of a case: the only one, or the list.
+    pub(super) fn materials(&self, schema: &CaseSchema, whole: &Span) -> Option<Vec<Material>> {
+        let (list, span) = match &schema.materials {
+            Field::Absent => {
+                let material = schema.material.required("material", whole, self.faults)?;
+                return self.material(material, &span_of(&schema.material)).map(|m| vec![m]);
+            }
+            Field::Bad(_) => return None,
+            Field::Good(list, span) => (list, span),
+        };
+        if let Some(other) = schema.material.span() {
+            self.refuse(other, "both `material` and `materials` are given".into(), "leave one out");
+            return None;
+        }
+        if list.is_empty() || list.len() > MOST {
+            let message = format!("{} materials", list.len());
+            self.refuse(
+                span.clone(),
+                message,
+                &format!("from 1 to {MOST}; the first fills what nothing else does"),
+            );
+            return None;
+        }
+        let read: Vec<Option<Material>> =
+            list.iter().map(|field| field.get().and_then(|m| self.material(m, &span_of(field)))).collect();
+        let materials: Vec<Material> = read.into_iter().collect::<Option<_>>()?;
+        for (k, material) in materials.iter().enumerate() {
+            if materials[..k].iter().any(|m| m.name == material.name) {
+                let message = format!("two materials are called {:?}", material.name);
+                self.refuse(
+                    span_of(&list[k]),
+                    message,
+                    "`called: \"…\"` gives a library's material another name",
+                );
+                return None;
+            }
+        }
+        Some(materials)
+    }
+
     pub(super) fn material(&self, material: &MaterialSchema, group: &Span) -> Option<Material> {
         let material = match material {
             MaterialSchema::Library(m) => self.library_material(m, group)?,
@@ -35,6 +78,9 @@ impl Resolver<'_> {
             self.refuse(span, message, &name_hint(name, &library::names()));
             return None;
         };
+        if let Some(called) = m.called.get() {
+            material.name.clone_from(called);
+        }
         let shear_modulus = shear_modulus.or(Some(material.strength.shear_modulus()).filter(|&g| g > 0.0));
         let known_yield = match material.strength {
             Strength::PerfectPlastic { yield_strength, .. } => Some(yield_strength),

@@ -8,7 +8,8 @@ use sph_materials::SoundSpeedModel;
 use sph_riemann::{Limiter, Scheme};
 
 use super::field::Field;
-use super::units::{Count, Density, Length, Number, Pressure, Velocity, Viscosity};
+pub use super::schema_medium::*;
+use super::units::{Count, Density, Number, Pressure, Velocity, Viscosity};
 
 /// The whole file.
 #[derive(Debug, Default, Deserialize)]
@@ -18,6 +19,8 @@ pub struct CaseSchema {
     pub name: Field<String>,
     /// The solid.
     pub material: Field<MaterialSchema>,
+    /// Several materials, in place of one.
+    pub materials: Field<Vec<Field<MaterialSchema>>>,
     /// Cell, pores and particles.
     pub medium: Field<MediumSchema>,
     /// How the equations are solved.
@@ -109,6 +112,8 @@ pub enum MaterialSchema {
 pub struct LibrarySchema {
     /// Name in the library.
     pub name: Field<String>,
+    /// Another name for this case: a library's material may be used twice, with different changes.
+    pub called: Field<String>,
     /// Shear modulus G.
     pub shear_modulus: Field<Pressure>,
     /// Yield strength Y.
@@ -166,50 +171,6 @@ pub struct VoidGrowthSchema {
     pub viscosity: Field<Viscosity>,
     /// φ_c at which voids meet.
     pub coalescence_porosity: Field<Number>,
-}
-
-/// Cell, pores and particles.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct MediumSchema {
-    /// Edge of the square periodic cell.
-    pub cell: Field<Length>,
-    /// Where the pores are.
-    pub pores: Field<PoresSchema>,
-    /// Porosity m = ρ0/ρ00 to reach.
-    pub porosity: Field<Number>,
-    /// Particle size D.
-    pub particle_size: Field<Length>,
-    /// How particles are packed.
-    pub packing: Field<PackingSchema>,
-}
-
-/// Where the pores are.
-#[derive(Debug, Deserialize)]
-pub enum PoresSchema {
-    /// No pores: the solid.
-    None,
-    /// One pore a cell.
-    Square(PoreSchema),
-    /// Two pores a cell: one more in the middle of four.
-    CenteredSquare(PoreSchema),
-}
-
-/// A circular pore.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct PoreSchema {
-    /// Radius r.
-    pub radius: Field<Length>,
-}
-
-/// How particles are packed.
-#[derive(Clone, Copy, Debug, Deserialize)]
-pub enum PackingSchema {
-    /// On a square lattice.
-    Square,
-    /// On a hexagonal lattice.
-    Hexagonal,
 }
 
 /// How the equations are solved.

@@ -116,7 +116,9 @@ impl<'de> Deserializer<'de> for Tree<'_> {
             Value::Integer(i) => visitor.visit_i64(*i),
             Value::Number(x) => visitor.visit_f64(*x),
             Value::Text(s) => visitor.visit_str(s),
-            Value::List(items) => visitor.visit_seq(Items { items: items.iter(), faults: self.faults }),
+            Value::List(items) | Value::Tuple(None, items) => {
+                visitor.visit_seq(Items { items: items.iter(), faults: self.faults })
+            }
             _ => return Err(self.unexpected(&wanted)),
         };
         result.map_err(|e| match e.message.starts_with("invalid type") {

@@ -38,7 +38,8 @@ pub type TheoryCurve = Vec<TheoryState>;
 /// The theories of a medium.
 #[derive(Clone, Debug)]
 pub struct Theory<'m> {
-    solid: &'m Material,
+    /// The only solid; none of a medium of several materials, which no theory here describes.
+    solid: Option<&'m Material>,
     /// The medium behind its precursor; none if the sample has no pores, or compaction would be anomalous.
     pub medium: Option<PorousMedium>,
 }
@@ -47,12 +48,17 @@ impl<'m> Theory<'m> {
     /// Of a medium of density ρ00 [kg/m³] behind a standing precursor [Pa].
     pub fn new(solid: &'m Material, bulk_density: f64, precursor_stress: f64) -> Self {
         let standing = Precursor::Standing { stress: precursor_stress };
-        Self { solid, medium: PorousMedium::new(solid, bulk_density, standing).ok() }
+        Self { solid: Some(solid), medium: PorousMedium::new(solid, bulk_density, standing).ok() }
+    }
+
+    /// Of a medium of several materials: no curve at all, rather than that of one of them.
+    pub fn none() -> Self {
+        Self { solid: None, medium: None }
     }
 
     /// The solid without pores and strength.
     pub fn solid(&self, speeds: &[f64]) -> TheoryCurve {
-        states(speeds, |u| hugoniot::principal(self.solid, u))
+        self.solid.map_or_else(Vec::new, |solid| states(speeds, |u| hugoniot::principal(solid, u)))
     }
 
     /// Pores shut, with the mean deviator behind as asked.
@@ -78,7 +84,8 @@ impl<'m> Theory<'m> {
 
     /// Pressed copper powder of Boade (1970), with the solid of the case.
     pub fn boade(&self, speeds: &[f64]) -> TheoryCurve {
-        let Ok(powder) = CompactionCurve::pressed_copper_powder(self.solid) else { return Vec::new() };
+        let powder = self.solid.map(CompactionCurve::pressed_copper_powder);
+        let Some(Ok(powder)) = powder else { return Vec::new() };
         let ahead = powder.precursor_state().particle_velocity;
         states(speeds, |u| powder.wave(u + ahead))
     }

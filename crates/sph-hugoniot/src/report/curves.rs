@@ -34,6 +34,8 @@ pub struct Curves<'c> {
     pub data: &'c [DataSet],
     /// Whether Boade's powder is laid beside.
     pub with_boade: bool,
+    /// Density ρ0 of the solid, the mean of all materials [kg/m³].
+    pub solid_density: f64,
 }
 
 /// Reads the measured data that a case names.
@@ -51,17 +53,21 @@ pub fn load_data(case: &Case) -> Result<Vec<DataSet>, DataError> {
 impl<'c> Curves<'c> {
     /// Fits and calibrates.
     pub fn new(case: &'c Case, sample: &Sample, outcomes: &[&PointOutcome], data: &'c [DataSet]) -> Self {
-        Self::of(case, Curve::new(sample.bulk_density(), outcomes), data)
+        let curves = Self::of(case, Curve::new(sample.bulk_density(), outcomes), data);
+        Self { solid_density: sample.density, ..curves }
     }
 
     fn of(case: &'c Case, curve: Curve, data: &'c [DataSet]) -> Self {
-        let theory = Theory::new(&case.material, curve.bulk_density, curve.precursor_stress);
+        let theory = case.single_material().map_or_else(Theory::none, |solid| {
+            Theory::new(solid, curve.bulk_density, curve.precursor_stress)
+        });
         let points = curve.to_fit();
         let fits = Form::ALL.iter().filter_map(|&form| Fit::new(form, &points)).collect();
         let calibrate = |n| crush::calibrate(&curve, theory.medium.as_ref()?, n);
         let (quadratic, free) = (calibrate(Some(2.0)), calibrate(None));
         let with_boade = case.data.contains(&DataSource::Boade1970);
-        Self { case, theory, fits, quadratic, free, data, with_boade, curve }
+        let solid_density = case.material.reference_density;
+        Self { case, theory, fits, quadratic, free, data, with_boade, curve, solid_density }
     }
 
     /// The fit of a form, if the points determine it.
@@ -71,7 +77,7 @@ impl<'c> Curves<'c> {
 
     /// m = ρ0/ρ00 of the sample [-].
     pub fn theory_porosity(&self) -> f64 {
-        self.case.material.reference_density / self.curve.bulk_density
+        self.solid_density / self.curve.bulk_density
     }
 
     /// u_p of the theory's curves [m/s]: those of points and data, a little wider.

@@ -170,7 +170,7 @@ fn p_alpha_json(curves: &Curves<'_>) -> Value {
         "source": "M. Jutzi, W. Benz & P. Michel, Icarus 198 (2008) 242-255",
         "pressure": "-sigma_xx behind the compaction wave, precursor included",
         "units": "SI",
-        "solid_density": curves.case.material.reference_density,
+        "solid_density": curves.solid_density,
         "precursor_stress": curves.curve.precursor_stress,
         "u_p": curves.curve.points.iter().map(|p| p.particle_velocity).collect::<Vec<_>>(),
         "u_s": curves.curve.points.iter().map(|p| p.shock_velocity.value).collect::<Vec<_>>(),

@@ -66,6 +66,11 @@ const HISTORY: [Number<(f64, f64, f64)>; 3] = [
     ("u_s", "m/s", "shock velocity over the cell", |c| c.2),
 ];
 
+/// Names of all materials.
+fn material_names(case: &Case) -> String {
+    case.materials().iter().map(|m| m.name.clone()).collect::<Vec<_>>().join(" + ")
+}
+
 fn behind(outcome: &PointOutcome, value: fn(&MeanState) -> f64) -> f64 {
     outcome.states.map_or(f64::NAN, |s| value(&s.behind))
 }
@@ -80,7 +85,10 @@ pub(super) fn add<Row>(table: Table, columns: &[Number<Row>], rows: &[&Row]) -> 
 pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Table {
     let title = format!(
         "Shock Hugoniot of {}: {}, porosity {:.5}, D = {:e} m",
-        case.name, case.material.name, sample.porosity, case.medium.particle_size
+        case.name,
+        material_names(case),
+        sample.porosity,
+        case.medium.particle_size
     );
     let whole = |name: &str, text: &str, value: fn(&PointOutcome) -> i64| {
         Column::integer(name, "", text, outcomes.iter().map(|o| value(o)).collect::<Vec<_>>())

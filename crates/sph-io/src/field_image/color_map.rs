@@ -15,6 +15,8 @@ pub enum ColorMap {
     Heat,
     /// Blue over white to red: for signed quantities; white is zero unless a range is given.
     Diverging,
+    /// A color for each whole number below this one: for kinds of things, see [`Field::categories`].
+    Categories(usize),
 }
 
 impl ColorMap {
@@ -26,6 +28,7 @@ impl ColorMap {
             Self::Sequential => colorous::VIRIDIS.eval_continuous(t),
             Self::Heat => colorous::INFERNO.eval_continuous(t),
             Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - t),
+            Self::Categories(count) => return category((t * count as f64) as usize, count),
         };
         Color::rgb(color.r, color.g, color.b)
     }
@@ -36,14 +39,31 @@ impl ColorMap {
         match self {
             Self::Sequential | Self::Heat => Color::rgb(236, 236, 236),
             Self::Diverging => Color::rgb(190, 190, 190),
+            Self::Categories(_) => Color::WHITE,
         }
     }
+}
+
+/// The color of a kind: metals first, told apart by color-blind readers too.
+fn category(kind: usize, count: usize) -> Color {
+    const COLORS: [Color; 6] = [
+        Color::rgb(201, 122, 66),
+        Color::rgb(96, 125, 160),
+        Color::rgb(0, 158, 115),
+        Color::rgb(204, 121, 167),
+        Color::rgb(240, 190, 60),
+        Color::rgb(60, 60, 60),
+    ];
+    COLORS[kind.min(count.saturating_sub(1)) % COLORS.len()]
 }
 
 /// The values at the ends of the color bar.
 pub(super) fn range(field: &Field) -> (f64, f64) {
     if let Some(range) = field.range {
         return range;
+    }
+    if let ColorMap::Categories(count) = field.map {
+        return (-0.5, count.max(1) as f64 - 0.5);
     }
     let mut values: Vec<f64> = field.values.iter().copied().filter(|value| value.is_finite()).collect();
     if values.is_empty() {
@@ -55,7 +75,7 @@ pub(super) fn range(field: &Field) -> (f64, f64) {
     let (low, high) = (values[n_left_out], values[last - n_left_out]);
     match field.map {
         ColorMap::Diverging => with_extent(-low.abs().max(high.abs()), low.abs().max(high.abs())),
-        ColorMap::Sequential | ColorMap::Heat => with_extent(low, high),
+        _ => with_extent(low, high),
     }
 }
 
@@ -89,5 +109,14 @@ mod tests {
         assert_eq!(range(&Field::new("v", [0.0], ColorMap::Diverging)), (-1.0, 1.0));
         assert_eq!(range(&Field::new("v", [10.0], ColorMap::Sequential)), (9.5, 10.5));
         assert_eq!(range(&Field::new("v", [], ColorMap::Sequential)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn kinds_have_colors_of_their_own() {
+        let field = Field::categories("kind", [0.0, 2.0, 1.0], vec!["a".into(), "b".into(), "c".into()]);
+        let (low, high) = range(&field);
+        let color = |value: f64| field.map.color((value - low) / (high - low));
+        assert!(color(0.0) != color(1.0) && color(1.0) != color(2.0) && color(0.0) != color(2.0));
+        assert_eq!(color(1.0), category(1, 3));
     }
 }

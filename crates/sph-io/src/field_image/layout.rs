@@ -135,7 +135,10 @@ fn plan(image: &FieldImage) -> Vec<Block<'_>> {
         let strips = strips(image, Rect { left, top, right, bottom: top + strip_height }, y_range);
         let bottom = strips.last().map_or(top, |strip| strip.area.bottom);
         let bar = Rect { left: right + BAR_GAP, top, right: right + BAR_GAP + BAR_WIDTH, bottom };
-        let bar_axis = axis("", color_map::range(field), (bar.bottom, bar.top), 45.0);
+        let mut bar_axis = axis("", color_map::range(field), (bar.bottom, bar.top), 45.0);
+        if !field.names.is_empty() {
+            bar_axis.ticks = named(field);
+        }
         blocks.push(Block { field, strips, bar, bar_axis });
         top = bottom + if image.n_strips > 1 { STRIP_FOOT } else { 4.0 };
     }
@@ -163,9 +166,16 @@ fn axis(label: &str, range: (f64, f64), span: (f64, f64), points_per_tick: f64) 
     AxisPlan { label: label.to_owned(), scale, ticks: Ticks::new(range, false, wanted.min(12)) }
 }
 
+/// Names in the place of numbers.
+fn named(field: &Field) -> Ticks {
+    let major = field.names.iter().enumerate().map(|(k, name)| (k as f64, name.clone())).collect();
+    Ticks { major, minor: Vec::new(), exponent: None }
+}
+
 /// Width of the numbers beside a field's bar, whatever its height turns out to be.
 fn bar_words(field: &Field) -> f64 {
-    let ticks = Ticks::new(color_map::range(field), false, 12);
+    let ticks =
+        if field.names.is_empty() { Ticks::new(color_map::range(field), false, 12) } else { named(field) };
     let exponent = if ticks.exponent.is_some() { 30.0 } else { 0.0 };
     ticks.major.iter().map(|(_, word)| text::width(word, TICK_SIZE)).fold(exponent, f64::max)
 }

@@ -38,12 +38,20 @@ pub struct Field {
     /// Values at the ends of the color bar; if absent, all values but the outermost 0.2 % at each end lie between
     /// them, and a diverging map is centered at zero. Values outside have the color of the end.
     pub range: Option<(f64, f64)>,
+    /// Names of the values 0, 1, …, shown beside the bar in place of numbers; none for other fields.
+    pub names: Vec<String>,
 }
 
 impl Field {
     /// A field with a range chosen from its values.
     pub fn new(label: impl Into<String>, values: impl Into<Vec<f64>>, map: ColorMap) -> Self {
-        Self { label: label.into(), values: values.into(), map, range: None }
+        Self { label: label.into(), values: values.into(), map, range: None, names: Vec::new() }
+    }
+
+    /// Kinds of things: values are whole numbers, each with its color and name.
+    pub fn categories(label: impl Into<String>, values: impl Into<Vec<f64>>, names: Vec<String>) -> Self {
+        let map = ColorMap::Categories(names.len());
+        Self { names, ..Self::new(label, values, map) }
     }
 
     /// The field with a fixed range, so that pictures of several times can be compared.

@@ -136,6 +136,11 @@ impl Check {
         for warning in &self.warnings {
             _ = writeln!(out, "warning: {warning}");
         }
+        let on_disk: f64 = self.points.iter().map(|p| p.snapshot_bytes).sum();
+        if on_disk > 0.0 {
+            let megabytes = significant((on_disk / 1e5).round() / 10.0);
+            _ = writeln!(out, "moments for ParaView: {megabytes} MB on disk at the most");
+        }
         _ = writeln!(out, "\nabout {time} on {} core(s), {memory} MB; estimates", self.threads);
         out
     }

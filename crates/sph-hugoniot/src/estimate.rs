@@ -9,6 +9,7 @@ use sph_materials::Strength;
 
 use crate::config::Case;
 use crate::microstructure::Sample;
+use crate::series;
 
 /// Memory of a particle with its neighbor lists [bytes]: the design bound of the solver.
 const BYTES_PER_PARTICLE: f64 = 800.0;
@@ -34,6 +35,8 @@ pub struct PointEstimate {
     pub seconds: f64,
     /// Memory [bytes].
     pub bytes: f64,
+    /// Moments for ParaView on disk [bytes]; zero where none are asked for.
+    pub snapshot_bytes: f64,
 }
 
 /// Guess of the shock velocity [m/s] of the medium at u_p [m/s].
@@ -74,7 +77,15 @@ pub fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> PointEstim
         steps,
         seconds: particles * steps / PARTICLE_STEPS_PER_SECOND,
         bytes: particles * BYTES_PER_PARTICLE,
+        snapshot_bytes: snapshot_bytes(case, particles, window_cells),
     }
+}
+
+/// Bytes of the moments for ParaView: over the cells that the front sweeps at the most, within the limit.
+fn snapshot_bytes(case: &Case, particles: f64, window_cells: usize) -> f64 {
+    let Some(snapshots) = &case.output.snapshots else { return 0.0 };
+    let swept = case.stop.max_fed_cells as f64 + case.window.front_place * window_cells as f64;
+    (swept / snapshots.every_cells * particles * series::BYTES_PER_PARTICLE).min(snapshots.limit_bytes)
 }
 
 /// Simulated time [s] and cells fed until a point can settle.

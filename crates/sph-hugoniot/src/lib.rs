@@ -29,6 +29,7 @@ pub mod report;
 pub mod restart;
 pub mod run;
 pub mod schema;
+pub mod series;
 pub mod setup;
 pub mod shell;
 pub mod statistics;

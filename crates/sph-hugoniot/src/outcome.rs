@@ -9,6 +9,7 @@ use sph_riemann::StageTimes;
 use crate::film::Frame;
 use crate::monitor::{MonitorRow, Worst, worst};
 use crate::observe::{Bin, Fields, States};
+use crate::series::SeriesLog;
 
 /// How a point ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,6 +74,8 @@ pub struct PointOutcome {
     pub monitors: Vec<MonitorRow>,
     /// Moments of the front after start-up.
     pub film: Vec<Frame>,
+    /// What was written for ParaView.
+    pub series: SeriesLog,
     /// Time by stage of the solver.
     pub stages: StageTimes,
     /// How it ended.
@@ -103,6 +106,7 @@ impl PointOutcome {
             fields: Fields::default(),
             monitors: Vec::new(),
             film: Vec::new(),
+            series: SeriesLog::default(),
             stages: StageTimes::default(),
             status: Status::Failed(reason),
             wall_seconds: 0.0,

@@ -26,6 +26,7 @@ use crate::monitor::{FrontView, Monitors};
 use crate::observe::{Fields, FrontProfile, ProfileGrid, States};
 use crate::outcome::{PointOutcome, Status};
 use crate::restart::Keeper;
+use crate::series::SeriesLog;
 use crate::setup;
 use crate::statistics::{mean, relative_spread};
 use crate::status::Way;
@@ -118,6 +119,8 @@ pub struct PointProgress {
     monitors: Monitors,
     /// Moments of the front.
     film: Film,
+    /// What was written for ParaView.
+    series: SeriesLog,
     /// Time that earlier runs took [s].
     seconds: f64,
 }
@@ -157,11 +160,19 @@ impl<'c> Point<'c> {
             };
             let Some(observation) = observation else { continue };
             let status = self.look(&observation);
+            self.write_moment(observation.swept, keeper.as_ref())?;
             control.progress(&self.way(&observation));
             if let Some(status) = status {
                 return Ok(status);
             }
         }
+    }
+
+    /// Writes the moment for ParaView, if the case asks for it and the point is kept on disk.
+    fn write_moment(&mut self, swept: f64, keeper: Option<&Keeper>) -> Result<()> {
+        let (Some(settings), Some(keeper)) = (&self.case.output.snapshots, keeper) else { return Ok(()) };
+        let swept_cells = swept / self.sample.cell;
+        Ok(self.progress.series.look(settings, &self.window, swept_cells, keeper.folder())?)
     }
 
     fn way(&self, now: &Observation) -> Way {
@@ -325,6 +336,7 @@ impl<'c> Point<'c> {
             fields: Fields::of(window),
             monitors: self.progress.monitors.rows().to_vec(),
             film: self.progress.film.frames().to_vec(),
+            series: self.progress.series.clone(),
             stages: *simulation.stage_times(),
             status,
             wall_seconds: 0.0,

@@ -133,4 +133,15 @@ pub struct Output {
     pub bins_per_cell: usize,
     /// Field images.
     pub images: bool,
+    /// A series of moments for ParaView; `None`: none.
+    pub snapshots: Option<Snapshots>,
+}
+
+/// A series of moments of each point for ParaView.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Snapshots {
+    /// Cells that the front sweeps between two moments.
+    pub every_cells: f64,
+    /// Bytes that a point may write.
+    pub limit_bytes: f64,
 }

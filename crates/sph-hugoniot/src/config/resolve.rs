@@ -182,7 +182,25 @@ impl Resolver<'_> {
         };
         let bins_per_cell = self.count(&o.bins_per_cell, 10, 1, 1000);
         let images = self.choice(&o.images, true);
-        Some(Output { directory: directory?, bins_per_cell: bins_per_cell?, images: images? })
+        let snapshots = self.snapshots(&o.snapshots);
+        Some(Output {
+            directory: directory?,
+            bins_per_cell: bins_per_cell?,
+            images: images?,
+            snapshots: snapshots?,
+        })
+    }
+
+    fn snapshots(&self, s: &Field<SnapshotsSchema>) -> Option<Option<Snapshots>> {
+        match s {
+            Field::Bad(_) => None,
+            Field::Absent | Field::Good(SnapshotsSchema::Off, _) => Some(None),
+            Field::Good(SnapshotsSchema::Every(every), _) => {
+                let cells = self.number(&every.cells, 0.5, 1e-3, 1e6);
+                let limit = self.number(&every.limit_mb, 500.0, 1e-3, 1e9);
+                Some(Some(Snapshots { every_cells: cells?, limit_bytes: 1e6 * limit? }))
+            }
+        }
     }
 
     /// The longest window fits into memory and leaves room between its regions.

@@ -341,4 +341,25 @@ pub struct OutputSchema {
     pub bins_per_cell: Field<Count>,
     /// Field images.
     pub images: Field<bool>,
+    /// A series of moments for ParaView.
+    pub snapshots: Field<SnapshotsSchema>,
+}
+
+/// A series of moments for ParaView.
+#[derive(Debug, Deserialize)]
+pub enum SnapshotsSchema {
+    /// None.
+    Off,
+    /// One each time that the front has swept so many cells.
+    Every(EverySchema),
+}
+
+/// How often, and how much.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EverySchema {
+    /// Cells that the front sweeps between two moments.
+    pub cells: Field<Number>,
+    /// Megabytes that a point may write.
+    pub limit_mb: Field<Number>,
 }

@@ -209,6 +209,10 @@ fn energies(outcome: &PointOutcome) -> Answer {
 fn pores(case: &Case) -> Answer {
     let across = 2.0 * case.medium.radius / case.medium.particle_size;
     let (verdict, value) = match across {
+        // Shapes of many sizes, or an image: the case names no radius.
+        a if a <= 0.0 && case.medium.porosity > 1.0 + 1e-9 => {
+            (Verdict::Unknown, "pores of no single size: look at the picture of the sample".to_owned())
+        }
         a if a <= 0.0 => (Verdict::Good, "no pores".to_owned()),
         a if a >= PORE.0 => (Verdict::Good, format!("{a:.1} particles across a pore")),
         a if a >= PORE.1 => (Verdict::Caution, format!("{a:.1} particles across a pore")),

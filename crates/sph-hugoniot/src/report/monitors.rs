@@ -111,5 +111,10 @@ pub fn interventions(outcomes: &[&PointOutcome]) -> Vec<String> {
             100.0 * floored
         ));
     }
+    lines.extend(outcomes.iter().filter(|o| o.series.is_full()).map(|o| {
+        let (n, megabytes) = (o.series.len(), o.series.bytes() as f64 / 1e6);
+        let u_p = o.particle_velocity;
+        format!("u_p = {u_p} m/s: limit_mb met after {n} moments for ParaView, {megabytes:.1} MB; later ones are left out")
+    }));
     lines
 }

@@ -20,12 +20,32 @@ impl SnapshotSeries {
         Self { folder: folder.into(), stem: stem.into(), entries: Vec::new() }
     }
 
+    /// A series that goes on: its earlier snapshots, which have these times, stay. The folder is made if it is not there.
+    ///
+    /// # Errors
+    /// [`IoError::File`] if the folder cannot be made.
+    pub fn resume(
+        folder: impl Into<PathBuf>,
+        stem: impl Into<String>,
+        times: &[f64],
+    ) -> Result<Self, IoError> {
+        let mut series = Self::new(folder, stem);
+        let folder = &series.folder;
+        std::fs::create_dir_all(folder).map_err(IoError::file(folder, "make the folder"))?;
+        series.entries = times.iter().enumerate().map(|(k, &time)| (time, series.name(k))).collect();
+        Ok(series)
+    }
+
+    fn name(&self, index: usize) -> String {
+        format!("{}_{index:06}.vtp", self.stem)
+    }
+
     /// Writes a snapshot and adds it to the list. Returns the snapshot's path.
     ///
     /// # Errors
     /// As [`Snapshot::write_vtp`].
     pub fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<PathBuf, IoError> {
-        let name = format!("{}_{:06}.vtp", self.stem, self.entries.len());
+        let name = self.name(self.entries.len());
         let path = self.folder.join(&name);
         snapshot.write_vtp(&path)?;
         self.entries.push((snapshot.time, name));

@@ -28,7 +28,7 @@ for entry in tree.parse(path).getroot().iter("DataSet"):
 fn run(folder: &Path, snapshots: &str) {
     let smoke = sph_hugoniot::template::text("smoke").unwrap();
     let case = smoke
-        .replace("max_fed_cells: 12", "max_fed_cells: 5")
+        .replace("max_fed_cells: 12", "max_fed_cells: 6")
         .replace("Cells(4)", "Cells(2)")
         .replace("\"results/smoke\"", &format!("\"out\", snapshots: {snapshots}"));
     std::fs::write(folder.join("case.ron"), case).unwrap();

@@ -2,6 +2,7 @@
 //!
 //! Each command is one file. They spawn release builds of the programs and link no numerics.
 
+mod bench;
 mod docs;
 mod files;
 mod health;
@@ -25,6 +26,8 @@ struct Arguments {
 enum Task {
     /// Run the problems with known answers and hold the figures against their gates.
     Validate(validate::Arguments),
+    /// Measure what a step costs on this machine, in one table, and count its instructions.
+    Bench(bench::Arguments),
     /// Hold the sources against the rules of the house: dependencies, module docs, paths, prints, sizes.
     Tidy,
     /// Look at what a release needs: licenses, packages; with --full a dry run, oldest dependencies, interfaces.
@@ -36,6 +39,7 @@ enum Task {
 fn main() -> anyhow::Result<ExitCode> {
     match Arguments::parse().task {
         Task::Validate(arguments) => validate::run(&arguments),
+        Task::Bench(arguments) => bench::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Health(arguments) => health::run(&arguments),
         Task::Docs => docs::run(),

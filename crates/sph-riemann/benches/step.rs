@@ -1,49 +1,16 @@
-//! Whole steps, lists amortized: particle-steps per second of a full lattice and of porous copper.
+//! Whole steps, lists amortized: particle-steps per second of a full lattice and of porous copper; and each stage by itself.
 //!
 //! `cargo bench -p sph-riemann` prints a throughput in elements (particle-steps) per second. Cases: θ = 0.5 (the shipped
 //! case), 0.55 and 0.6; one thread and two; 10⁴ to 10⁶ particles; space.
 
+mod common;
+
 use std::time::{Duration, Instant};
 
+use common::{advance, lattice};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use sph_core::{Components, Dim2, Dim3, Domain, Particle, Particles};
-use sph_riemann::{Scheme, Settings, Simulation, SolidDimension};
-
-const SIZE: f64 = 1e-6;
-
-/// A periodic lattice of `cells` particles along each axis in a smooth flow; with two pores in each square of 20, if
-/// asked for.
-fn lattice<D: SolidDimension>(cells: usize, porous: bool, settings: Settings) -> Simulation<D> {
-    let copper = sph_materials::library::material("porous-copper").expect("a library material");
-    let length = cells as f64 * SIZE;
-    let mut particles = Particles::<D>::default();
-    for cell in 0..cells.pow(D::COUNT as u32) {
-        let index = |a: usize| cell / cells.pow(a as u32) % cells;
-        let position = D::vector(|a| (index(a) as f64 + 0.5) * SIZE);
-        let in_pore = |shift: f64| {
-            let to_center = |a: usize| (position[a] / SIZE - shift).rem_euclid(20.0) - 10.0;
-            to_center(0).hypot(to_center(1)) < 4.06
-        };
-        if porous && (in_pore(0.0) || in_pore(10.0)) {
-            continue;
-        }
-        let mass = 8960.0 * SIZE.powi(D::COUNT as i32);
-        let mut particle = Particle::at_rest(cell as u64, position, mass, SIZE, 8960.0);
-        let wave = |a: usize| (2.0 * std::f64::consts::PI * position[a] / (40.0 * SIZE)).sin();
-        particle.velocity = D::vector(|a| 60.0 * wave(a) - 400.0);
-        particles.push(particle);
-    }
-    let domain = Domain::new(D::vector(|_| 0.0), D::vector(|_| length), Components::from_fn(|_| true));
-    let mut simulation = Simulation::new(domain, vec![copper], particles, settings).expect("a sound set-up");
-    advance(&mut simulation, 10);
-    simulation
-}
-
-fn advance<D: SolidDimension>(simulation: &mut Simulation<D>, steps: u64) {
-    for _ in 0..steps {
-        simulation.step().expect("a sound step");
-    }
-}
+use sph_core::{Dim2, Dim3};
+use sph_riemann::{Scheme, Settings, SolidDimension, StepStage};
 
 /// Time of `steps` steps, each set of thirty from the same start: lists are rebuilt as a run rebuilds them.
 fn time_steps<D: SolidDimension>(cells: usize, porous: bool, settings: Settings, steps: u64) -> Duration {
@@ -106,6 +73,43 @@ fn space(criterion: &mut Criterion) {
     bench::<Dim3>(criterion, "step in space", &case);
 }
 
+/// Time of one stage in `steps` steps.
+fn time_stage<D: SolidDimension>(stage: StepStage, cells: usize, settings: Settings, steps: u64) -> Duration {
+    let mut simulation = lattice::<D>(cells, D::COUNT == 2, settings);
+    let before = simulation.stage_times().seconds(stage);
+    advance(&mut simulation, steps);
+    Duration::from_secs_f64(simulation.stage_times().seconds(stage) - before)
+}
+
+/// Each stage of a step by itself, as the steps of a run take it: the neighbor lists amortized.
+fn stages<D: SolidDimension>(criterion: &mut Criterion, sizes: &[usize], theta: f64) {
+    let settings = Settings { smoothing: theta, ..Settings::default() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("threads");
+    for &cells in sizes {
+        let particles = lattice::<D>(cells, D::COUNT == 2, settings).particles().len();
+        let mut group = criterion.benchmark_group(format!("stages {}-D", D::COUNT));
+        group.sample_size(10).throughput(Throughput::Elements(particles as u64));
+        group.measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(200));
+        for stage in StepStage::ALL {
+            group.bench_function(BenchmarkId::new(stage.name(), particles), |bencher| {
+                bencher.iter_custom(|steps| {
+                    pool.install(|| time_stage::<D>(stage, cells, settings, steps.max(20)))
+                        .mul_f64(steps as f64 / steps.max(20) as f64)
+                });
+            });
+        }
+        group.finish();
+    }
+}
+
+fn stages_in_the_plane(criterion: &mut Criterion) {
+    stages::<Dim2>(criterion, &[120, 360, 1160], 0.5);
+}
+
+fn stages_in_space(criterion: &mut Criterion) {
+    stages::<Dim3>(criterion, &[22, 46, 100], 0.6);
+}
+
 fn bench<D: SolidDimension>(criterion: &mut Criterion, group: &str, case: &Case) {
     let settings = Settings { smoothing: case.theta, ..Settings::for_scheme(case.scheme) };
     let particles = lattice::<D>(case.cells, case.porous, settings).particles().len();
@@ -120,5 +124,5 @@ fn bench<D: SolidDimension>(criterion: &mut Criterion, group: &str, case: &Case)
     group.finish();
 }
 
-criterion_group!(benches, plane, space);
+criterion_group!(benches, plane, space, stages_in_the_plane, stages_in_space);
 criterion_main!(benches);

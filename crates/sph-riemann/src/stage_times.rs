@@ -79,6 +79,12 @@ impl StageTimes {
         StepStage::ALL.iter().map(|&s| (s.name(), self.seconds(s), self.seconds(s) / total)).collect()
     }
 
+    /// What has been added since an earlier reading.
+    pub fn since(&self, earlier: &Self) -> Self {
+        let seconds = std::array::from_fn(|s| self.seconds[s] - earlier.seconds[s]);
+        Self { seconds, rebuilds: self.rebuilds - earlier.rebuilds }
+    }
+
     /// Adds the times of another simulation.
     pub fn merge(&mut self, other: &Self) {
         (0..self.seconds.len()).for_each(|s| self.seconds[s] += other.seconds[s]);

@@ -29,6 +29,8 @@ pub mod report;
 pub mod restart;
 pub mod run;
 pub mod schema;
+pub mod separation;
+pub mod settle;
 pub mod series;
 pub mod setup;
 pub mod shell;

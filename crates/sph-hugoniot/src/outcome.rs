@@ -5,11 +5,13 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use sph_materials::jump::JumpResiduals;
 use sph_riemann::StageTimes;
+use sph_window::search::bisection::Trial;
 
 use crate::film::Frame;
 use crate::monitor::{MonitorRow, Worst, worst};
-use crate::observe::{Bin, Fields, States};
+use crate::observe::{Bin, Fields, Precursor, States};
 use crate::series::SeriesLog;
+use crate::settle::BlockRecord;
 
 /// How a point ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,7 +46,7 @@ pub struct PointOutcome {
     pub effective_particle_velocity: f64,
     /// u_s relative to the medium ahead, from the front's way [m/s].
     pub shock_velocity: f64,
-    /// Its standard error [m/s].
+    /// Its uncertainty: standard error of the mean and slow drift ([`crate::settle`]) [m/s].
     pub standard_error: f64,
     /// Cells that u_s is averaged over.
     pub averaged_cells: usize,
@@ -66,8 +68,22 @@ pub struct PointOutcome {
     pub ledger_residual: f64,
     /// (time [s], swept length [m], u_s [m/s]) of each cell that the front swept, from the start.
     pub cell_velocities: Vec<(f64, f64, f64)>,
+    /// What was concluded from each block of cells.
+    pub blocks: Vec<BlockRecord>,
+    /// What a bisection tried; empty with tracking.
+    pub search: Vec<Trial>,
+    /// The elastic precursor on its first way through the window.
+    pub precursor: Option<Precursor>,
+    /// What it misses the jump conditions of mass, momentum and energy by [-].
+    pub precursor_residuals: Option<JumpResiduals>,
     /// Averaged profile in the frame of the front.
     pub profile: Vec<Bin>,
+    /// Moments that it is the mean of.
+    pub profile_looks: usize,
+    /// Profiles of single moments, a cell of the front's way apart.
+    pub snapshots: Vec<Vec<Bin>>,
+    /// What is doubtful about the point, each with what to change.
+    pub warnings: Vec<String>,
     /// The last moment.
     pub fields: Fields,
     /// What was watched, a row for each cell that the front swept.
@@ -102,7 +118,14 @@ impl PointOutcome {
             particles: 0,
             ledger_residual: f64::NAN,
             cell_velocities: Vec::new(),
+            blocks: Vec::new(),
+            search: Vec::new(),
+            precursor: None,
+            precursor_residuals: None,
             profile: Vec::new(),
+            profile_looks: 0,
+            snapshots: Vec::new(),
+            warnings: Vec::new(),
             fields: Fields::default(),
             monitors: Vec::new(),
             film: Vec::new(),

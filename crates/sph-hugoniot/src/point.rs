@@ -1,10 +1,11 @@
 //! One point of the Hugoniot: one u_p, run to a steady front.
 //!
 //! 1. **Start-up.** The window is filled with the medium, the outlet is the piston, the front runs to its place, and what
-//!    was compacted on the way leaves through the outlet.
-//! 2. **Blocks.** From then on the front's way through the medium is cut into blocks of whole cells. A point has settled
-//!    when the u_s of the last `blocks` blocks spread by less than `tolerance`; these blocks give u_s, its standard error
-//!    (batch means over single cells, [`crate::statistics`]) and the averaged profile. Earlier blocks are dropped.
+//!    was compacted on the way leaves through the outlet. Meanwhile the elastic precursor passes and is read
+//!    ([`crate::observe::PrecursorWatch`]). With `search: Bisection` the search runs too.
+//! 2. **Blocks.** From then on the front's way through the medium is cut into blocks of whole cells. After each block
+//!    [`crate::settle`] says whether the point has settled, and why not; the blocks that agree give u_s, its uncertainty
+//!    and the averaged profile. Earlier blocks are dropped.
 //! 3. **End.** Settled, or `max_fed_cells` are fed: then the last blocks are reported with the status `not settled`.
 //!
 //! A step that fails ends the point with the status `failed` and the reason; what was measured until then is kept.
@@ -23,14 +24,19 @@ use crate::failure;
 use crate::film::Film;
 use crate::microstructure::Sample;
 use crate::monitor::{FrontView, Monitors};
-use crate::observe::{Fields, FrontProfile, ProfileGrid, States};
+use crate::observe::{Bin, Fields, FrontProfile, PrecursorWatch, ProfileGrid, States};
 use crate::outcome::{PointOutcome, Status};
 use crate::restart::Keeper;
 use crate::series::SeriesLog;
+use crate::settle::{self, BlockRecord, Decision};
 use crate::setup;
-use crate::statistics::{mean, relative_spread};
+use crate::statistics::harmonic_mean;
 use crate::status::Way;
 
+/// Cells that the front sweeps between two looks at the precursor: it runs several times as fast.
+const PRECURSOR_LOOKS: f64 = 0.05;
+/// Snapshots of the profile that are kept, one each cell, the newest.
+const SNAPSHOTS: usize = 6;
 /// Cells over which the place of the front is smoothed for the profiles.
 const FRONT_MEMORY: f64 = 2.0;
 
@@ -121,6 +127,14 @@ pub struct PointProgress {
     film: Film,
     /// What was written for ParaView.
     series: SeriesLog,
+    /// What was concluded from each block.
+    log: Vec<BlockRecord>,
+    /// The precursor on its first way.
+    precursor: PrecursorWatch,
+    /// Cells swept when it was looked at last.
+    precursor_look: f64,
+    /// Profiles of single moments, the newest last.
+    snapshots: Vec<Vec<Bin>>,
     /// Time that earlier runs took [s].
     seconds: f64,
 }
@@ -186,28 +200,70 @@ impl<'c> Point<'c> {
     /// Takes a look at the front in; the status if the point has come to its end.
     fn look(&mut self, now: &Observation) -> Option<Status> {
         let before = self.progress.last_look.replace(*now).unwrap_or(*now);
+        self.watch_precursor(now);
         self.smooth_front(now, &before);
         self.record(now.swept);
         if self.progress.blocks_from.is_none() && self.startup_is_over() {
-            tracing::info!(
-                u_p = self.particle_velocity,
-                cells = now.swept / self.sample.cell,
-                "start-up is over"
-            );
-            self.progress.blocks_from = Some(now.swept);
-            self.progress.profiles.push(self.new_profile());
+            self.end_startup(now);
         }
         if let Some(profile) = self.progress.profiles.last_mut() {
             profile.observe(&self.window, self.progress.mean_front, now.time - before.time);
+            self.take_snapshot(now, &before);
         }
         if self.progress.blocks_from.is_some() && self.full_blocks() >= self.progress.profiles.len() {
-            tracing::info!(u_p = self.particle_velocity, u_s = ?self.counted_blocks(), "blocks");
-            if self.has_settled() {
+            if self.judge() == Decision::Settled {
                 return Some(Status::Settled);
             }
             self.progress.profiles.push(self.new_profile());
         }
-        (self.window.fed_cells() >= self.case.stop.max_fed_cells as f64).then_some(Status::NotSettled)
+        let limit = self.case.stop.max_fed_cells as f64;
+        (!self.window.is_searching() && self.window.fed_cells() >= limit).then_some(Status::NotSettled)
+    }
+
+    fn watch_precursor(&mut self, now: &Observation) {
+        let swept = now.swept / self.sample.cell;
+        let is_due = swept - self.progress.precursor_look >= PRECURSOR_LOOKS;
+        if self.progress.precursor.is_watching() && is_due {
+            self.progress.precursor.observe(&self.window, self.sample.cell);
+            self.progress.precursor_look = swept;
+        }
+    }
+
+    fn end_startup(&mut self, now: &Observation) {
+        let (u_p, cells) = (self.particle_velocity, now.swept / self.sample.cell);
+        tracing::info!(u_p, cells, "start-up is over");
+        self.progress.blocks_from = Some(now.swept);
+        self.progress.profiles.push(self.new_profile());
+        let blocks = self.window.blocks();
+        let before: Vec<f64> = blocks.iter().map(|b| b.velocity()).collect();
+        let first = blocks.first().map_or(0.0, |b| b.swept / self.sample.cell);
+        self.progress.log = settle::startup_records(&before, first, self.case.stop.block_cells);
+    }
+
+    /// Judges the blocks, and logs it.
+    fn judge(&mut self) -> Decision {
+        let from = self.progress.blocks_from.unwrap_or(0.0);
+        let first = self.window.blocks().iter().find(|b| b.swept >= from).map_or(from, |b| b.swept);
+        let first = first / self.sample.cell;
+        let record = settle::judge(&self.cell_velocities(), first, &self.case.stop, self.blocks());
+        let u_p = self.particle_velocity;
+        tracing::info!(u_p, cells = record.to, u_s = record.mean, error = record.error, "{}", record.decision);
+        self.progress.log.push(record);
+        record.decision
+    }
+
+    /// Keeps the profile of this moment if the front has come into a new cell.
+    fn take_snapshot(&mut self, now: &Observation, before: &Observation) {
+        let cell = |o: &Observation| (o.swept / self.sample.cell).floor();
+        if cell(now) <= cell(before) {
+            return;
+        }
+        let mut profile = self.new_profile();
+        profile.observe(&self.window, self.progress.mean_front, 1.0);
+        if self.progress.snapshots.len() == SNAPSHOTS {
+            self.progress.snapshots.remove(0);
+        }
+        self.progress.snapshots.push(profile.bins());
     }
 
     /// The front hops from pore to pore; profiles are taken where it is on the mean of a few cells, so that the pores
@@ -216,7 +272,8 @@ impl<'c> Point<'c> {
         if self.progress.mean_front == 0.0 {
             self.progress.mean_front = now.front;
         }
-        let swept = (now.swept - before.swept) / self.sample.cell;
+        // A bisection goes back to its saved state.
+        let swept = ((now.swept - before.swept) / self.sample.cell).max(0.0);
         self.progress.mean_front +=
             (1.0 - (-swept / FRONT_MEMORY).exp()) * (now.front - self.progress.mean_front);
     }
@@ -246,7 +303,7 @@ impl<'c> Point<'c> {
     fn startup_is_over(&self) -> bool {
         match self.case.stop.startup_cells {
             None => self.window.is_settled(),
-            Some(cells) => self.window.fed_cells() >= cells as f64,
+            Some(cells) => !self.window.is_searching() && self.window.fed_cells() >= cells as f64,
         }
     }
 
@@ -260,31 +317,21 @@ impl<'c> Point<'c> {
         self.cell_velocities().len() / self.case.stop.block_cells
     }
 
-    /// Cells of the last blocks that must agree; all there are while they are fewer.
+    /// Blocks that must agree.
+    fn blocks(&self) -> usize {
+        self.case.stop.blocks_at(self.case.window.cells_at(self.particle_velocity))
+    }
+
+    /// Cells that u_s is averaged over.
     fn counted_cells(&self) -> Vec<f64> {
-        let (stop, cells) = (&self.case.stop, self.cell_velocities());
-        let full = cells.len() / stop.block_cells * stop.block_cells;
-        if full == 0 {
-            return cells;
-        }
-        cells[full.saturating_sub(stop.blocks * stop.block_cells)..full].to_vec()
-    }
-
-    /// u_s of the last blocks [m/s].
-    fn counted_blocks(&self) -> Vec<f64> {
-        self.counted_cells().chunks(self.case.stop.block_cells).map(harmonic_mean).collect()
-    }
-
-    fn has_settled(&self) -> bool {
-        let (stop, blocks) = (&self.case.stop, self.counted_blocks());
-        blocks.len() >= stop.blocks && relative_spread(&blocks) <= stop.tolerance
+        settle::stretch(&self.cell_velocities(), &self.case.stop, self.blocks()).to_vec()
     }
 
     /// Cells that the front will have swept at the earliest end.
     fn expected_cells(&self) -> f64 {
         let stop = &self.case.stop;
         let cells = self.case.window.cells_at(self.particle_velocity);
-        let blocks = self.progress.profiles.len().max(stop.blocks) * stop.block_cells;
+        let blocks = self.progress.profiles.len().max(self.blocks()) * stop.block_cells;
         let start = self.progress.blocks_from.map(|from| from / self.sample.cell);
         start.unwrap_or(stop.startup_at(cells) as f64 + 0.5 * cells as f64) + blocks as f64
     }
@@ -294,7 +341,7 @@ impl<'c> Point<'c> {
         let full = self.full_blocks().min(self.progress.profiles.len());
         let counted = match full {
             0 => &self.progress.profiles[..],
-            n => &self.progress.profiles[n.saturating_sub(self.case.stop.blocks)..n],
+            n => &self.progress.profiles[n.saturating_sub(self.blocks())..n],
         };
         let (first, rest) = counted.split_first()?;
         let mut sum = first.clone();
@@ -308,15 +355,15 @@ impl<'c> Point<'c> {
         let profile = self.profile();
         let margins = window.settings().plateau;
         let (cell, size) = (self.sample.cell, self.case.medium.particle_size);
-        let whole = profile.as_ref().filter(|_| self.full_blocks() > 0);
-        let states = whole.and_then(|p| States::read(p, &margins, cell, size));
+        let is_whole = self.full_blocks() > 0;
+        let states = profile.as_ref().filter(|_| is_whole).and_then(|p| States::read(p, &margins, cell, size));
         let shock_velocity = if cells.is_empty() { f64::NAN } else { harmonic_mean(&cells) };
         let simulation = window.simulation();
         PointOutcome {
             particle_velocity: self.particle_velocity,
             effective_particle_velocity: window.effective_particle_velocity(),
             shock_velocity,
-            standard_error: crate::statistics::standard_error(&cells),
+            standard_error: settle::uncertainty(&self.cell_velocities(), &self.case.stop, self.blocks()),
             averaged_cells: cells.len(),
             mass_balance_velocity: states
                 .map_or(f64::NAN, |s| s.mass_balance_velocity(self.sample.bulk_density())),
@@ -332,19 +379,39 @@ impl<'c> Point<'c> {
                 .iter()
                 .map(|b| (b.end, b.swept + b.length, b.velocity()))
                 .collect(),
+            blocks: self.progress.log.clone(),
+            search: window.audit().to_vec(),
+            precursor: self.progress.precursor.found(),
+            precursor_residuals: self
+                .progress
+                .precursor
+                .found()
+                .map(|p| p.residuals(self.sample.bulk_density())),
+            profile_looks: profile.as_ref().map_or(0, FrontProfile::looks),
             profile: profile.map(|p| p.bins()).unwrap_or_default(),
+            snapshots: self.progress.snapshots.clone(),
+            warnings: if is_whole { self.warnings(states.as_ref()) } else { Vec::new() },
             fields: Fields::of(window),
             monitors: self.progress.monitors.rows().to_vec(),
             film: self.progress.film.frames().to_vec(),
             series: self.progress.series.clone(),
-            stages: *simulation.stage_times(),
+            stages: window.stage_times(),
             status,
             wall_seconds: 0.0,
         }
     }
-}
 
-/// Mean velocity over cells of equal length: their length over their time.
-fn harmonic_mean(velocities: &[f64]) -> f64 {
-    1.0 / mean(&velocities.iter().map(|v| 1.0 / v).collect::<Vec<_>>())
+    /// What is doubtful about the point, each with what to change.
+    fn warnings(&self, states: Option<&States>) -> Vec<String> {
+        let cells = self.case.window.cells_at(self.particle_velocity);
+        let place = self.case.window.front_place;
+        let Some(states) = states else {
+            return vec![format!(
+                "the window of {cells} cells leaves no room for a state behind the front and one ahead of it; hint: \
+                 window: (length: Cells({}))",
+                2 * cells
+            )];
+        };
+        states.warnings(self.sample.cell, cells, place)
+    }
 }

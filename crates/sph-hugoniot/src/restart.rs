@@ -14,7 +14,7 @@ use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use sph_core::{Constraint, Dim2, Dimension, Particles};
 use sph_io::checkpoint::{self, Checkpoint, CheckpointStore, ColumnData};
-use sph_window::{Window, WindowState};
+use sph_window::{Snapshot, Window, WindowState};
 
 use crate::config::Case;
 use crate::microstructure::Sample;
@@ -40,7 +40,18 @@ struct SavedPoint {
     window: WindowState,
     progress: PointProgress,
     has_lists: bool,
+    snapshot: Option<SavedSnapshot>,
 }
+
+/// The state that the trials of a bisection start from, beside its columns.
+#[derive(Serialize, Deserialize)]
+struct SavedSnapshot {
+    state: WindowState,
+    has_lists: bool,
+}
+
+/// What the names of its columns begin with.
+const SNAPSHOT: &str = "saved_";
 
 impl Keeper {
     /// Keeps a point in its folder, which is made.
@@ -118,25 +129,18 @@ impl Keeper {
     /// If it cannot be written; the states before still stand.
     pub fn save(&mut self, window: &Window<Dim2>, progress: &PointProgress) -> Result<()> {
         let simulation = window.simulation();
-        let particles = simulation.particles();
-        let lists = simulation.list_positions();
-        let header =
-            SavedPoint { window: window.save(), progress: progress.clone(), has_lists: lists.is_some() };
-        let numbers = particles.columns();
-        let list_names = list_names();
-        let material: Vec<u32> = particles.material.iter().map(|&m| u32::from(m)).collect();
-        let constraint: Vec<u8> = particles.constraint.iter().map(|&c| c as u8).collect();
-        let failed: Vec<u8> = particles.failed.iter().map(|&f| u8::from(f)).collect();
-        let mut columns: Vec<(&str, ColumnData<'_>)> = vec![
-            ("id", ColumnData::U64(&particles.id)),
-            ("material", ColumnData::U32(&material)),
-            ("constraint", ColumnData::U8(&constraint)),
-            ("failed", ColumnData::U8(&failed)),
-        ];
-        columns.extend(numbers.iter().map(|(name, column)| (name.as_str(), ColumnData::F64(column))));
-        for (name, column) in list_names.iter().zip(lists.unwrap_or_default()) {
-            columns.push((name, ColumnData::F64(column)));
-        }
+        let snapshot = window.snapshot();
+        let present = Columns::of(simulation.particles(), simulation.list_positions(), "");
+        let earlier = snapshot.map(|s| Columns::of(&s.particles, s.list_positions.as_deref(), SNAPSHOT));
+        let header = SavedPoint {
+            window: window.save(),
+            progress: progress.clone(),
+            has_lists: simulation.list_positions().is_some(),
+            snapshot: snapshot
+                .map(|s| SavedSnapshot { state: s.state.clone(), has_lists: s.list_positions.is_some() }),
+        };
+        let mut columns = present.data();
+        columns.extend(earlier.iter().flat_map(Columns::data));
         self.store.save(&header, &columns)?;
         self.last = Instant::now();
         Ok(())
@@ -156,14 +160,18 @@ impl Keeper {
         for fault in &loaded.skipped {
             tracing::warn!("{fault}; the state before it is taken");
         }
-        let particles = read_particles(&mut loaded.checkpoint)?;
-        let mut lists = Vec::new();
-        if loaded.checkpoint.header.has_lists {
-            for name in list_names() {
-                lists.push(loaded.checkpoint.take_f64(&name)?);
-            }
-        }
+        let (has_lists, earlier) = {
+            let header = &loaded.checkpoint.header;
+            (header.has_lists, header.snapshot.as_ref().map(|s| s.has_lists))
+        };
+        let (particles, lists) = read_moment(&mut loaded.checkpoint, "", has_lists)?;
+        let moment = earlier.map(|lists| read_moment(&mut loaded.checkpoint, SNAPSHOT, lists)).transpose()?;
         let saved = loaded.checkpoint.header;
+        let snapshot = saved.snapshot.zip(moment).map(|(saved, (particles, list_positions))| Snapshot {
+            state: saved.state,
+            particles,
+            list_positions,
+        });
         let window = Window::restore(
             setup::feed_sample(sample)?,
             case.materials(),
@@ -171,8 +179,9 @@ impl Keeper {
             setup::window_settings(case, u_p),
             saved.window,
             particles,
-            saved.has_lists.then_some(lists.as_slice()),
-        )?;
+            lists.as_deref(),
+        )?
+        .with_snapshot(snapshot);
         Ok(Some((window, saved.progress)))
     }
 }
@@ -182,16 +191,32 @@ fn list_names() -> Vec<String> {
     ["x", "y", "z"][..Dim2::COUNT].iter().map(|axis| format!("list_{axis}")).collect()
 }
 
-fn read_particles(from: &mut Checkpoint<SavedPoint>) -> Result<Particles<Dim2>> {
-    let material = from.take_u32("material")?;
+/// Particles and list positions under names with a prefix.
+fn read_moment(
+    from: &mut Checkpoint<SavedPoint>,
+    prefix: &str,
+    has_lists: bool,
+) -> Result<(Particles<Dim2>, Option<Vec<Vec<f64>>>)> {
+    let particles = read_particles(from, prefix)?;
+    if !has_lists {
+        return Ok((particles, None));
+    }
+    let lists =
+        list_names().iter().map(|name| from.take_f64(&format!("{prefix}{name}"))).collect::<Result<_, _>>()?;
+    Ok((particles, Some(lists)))
+}
+
+fn read_particles(from: &mut Checkpoint<SavedPoint>, prefix: &str) -> Result<Particles<Dim2>> {
+    let under = |name: &str| format!("{prefix}{name}");
+    let material = from.take_u32(&under("material"))?;
     let mut particles = Particles::<Dim2> {
-        id: from.take_u64("id")?,
+        id: from.take_u64(&under("id"))?,
         material: material.into_iter().map(u16::try_from).collect::<Result<_, _>>()?,
-        constraint: from.take_u8("constraint")?.into_iter().map(constraint).collect::<Result<_>>()?,
-        failed: from.take_u8("failed")?.into_iter().map(|f| f != 0).collect(),
+        constraint: from.take_u8(&under("constraint"))?.into_iter().map(constraint).collect::<Result<_>>()?,
+        failed: from.take_u8(&under("failed"))?.into_iter().map(|f| f != 0).collect(),
         ..Default::default()
     };
-    let names: Vec<String> = particles.columns().into_iter().map(|(name, _)| name).collect();
+    let names: Vec<String> = particles.columns().into_iter().map(|(name, _)| under(&name)).collect();
     for (name, column) in names.iter().zip(particles.columns_mut()) {
         *column = from.take_f64(name)?;
     }
@@ -204,6 +229,46 @@ fn read_particles(from: &mut Checkpoint<SavedPoint>) -> Result<Particles<Dim2>> 
         from.path.display()
     );
     Ok(particles)
+}
+
+/// Columns of a checkpoint, with names of their own.
+struct Columns<'p> {
+    particles: &'p Particles<Dim2>,
+    lists: Option<&'p [Vec<f64>]>,
+    names: Vec<String>,
+    material: Vec<u32>,
+    constraint: Vec<u8>,
+    failed: Vec<u8>,
+}
+
+impl<'p> Columns<'p> {
+    fn of(particles: &'p Particles<Dim2>, lists: Option<&'p [Vec<f64>]>, prefix: &str) -> Self {
+        let numbers = particles.columns();
+        let fixed = ["id", "material", "constraint", "failed"].map(String::from);
+        let of_lists = if lists.is_some() { list_names() } else { Vec::new() };
+        let names = fixed.into_iter().chain(numbers.into_iter().map(|(name, _)| name)).chain(of_lists);
+        Self {
+            particles,
+            lists,
+            names: names.map(|name| format!("{prefix}{name}")).collect(),
+            material: particles.material.iter().map(|&m| u32::from(m)).collect(),
+            constraint: particles.constraint.iter().map(|&c| c as u8).collect(),
+            failed: particles.failed.iter().map(|&f| u8::from(f)).collect(),
+        }
+    }
+
+    /// As a checkpoint takes them, in the order of the names.
+    fn data(&self) -> Vec<(&str, ColumnData<'_>)> {
+        let mut data = vec![
+            ColumnData::U64(&self.particles.id),
+            ColumnData::U32(&self.material),
+            ColumnData::U8(&self.constraint),
+            ColumnData::U8(&self.failed),
+        ];
+        data.extend(self.particles.columns().into_iter().map(|(_, column)| ColumnData::F64(column)));
+        data.extend(self.lists.unwrap_or_default().iter().map(|column| ColumnData::F64(column)));
+        self.names.iter().map(String::as_str).zip(data).collect()
+    }
 }
 
 fn constraint(code: u8) -> Result<Constraint> {

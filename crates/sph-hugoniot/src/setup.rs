@@ -30,10 +30,18 @@ pub fn window_settings(case: &Case, particle_velocity: f64) -> WindowSettings {
             outlet_frozen: window.region_width,
         },
         inlet: window.inlet,
-        search: Search::FrameTracking(FrameTracking { interval: cell, ..FrameTracking::default() }),
+        search: search(case.search, cell),
         block: cell,
         plateau: margins(window.front_place * length / size - 2.0 * window.region_width),
         ..WindowSettings::new(length, particle_velocity)
+    }
+}
+
+/// The search, with boosts once a cell of so many particle sizes.
+fn search(search: Search, cell: f64) -> Search {
+    match search {
+        Search::FrameTracking(tracking) => Search::FrameTracking(FrameTracking { interval: cell, ..tracking }),
+        other => other,
     }
 }
 

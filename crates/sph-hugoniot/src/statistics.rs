@@ -40,6 +40,23 @@ pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// Mean velocity over cells of equal length: their length over their time.
+pub fn harmonic_mean(velocities: &[f64]) -> f64 {
+    1.0 / mean(&velocities.iter().map(|v| 1.0 / v).collect::<Vec<_>>())
+}
+
+/// Slope of the least-squares line through consecutive values, per value; zero for fewer than two.
+pub fn line_slope(values: &[f64]) -> f64 {
+    let (middle, center) = (0.5 * (values.len() as f64 - 1.0), mean(values));
+    let (mut product, mut square) = (0.0, 0.0);
+    for (k, value) in values.iter().enumerate() {
+        let offset = k as f64 - middle;
+        product += offset * (value - center);
+        square += offset * offset;
+    }
+    if square > 0.0 { product / square } else { 0.0 }
+}
+
 /// (greatest - least)/mean of the values: how far successive blocks disagree.
 pub fn relative_spread(values: &[f64]) -> f64 {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -91,5 +108,7 @@ mod tests {
         assert!(standard_error(&values) > 0.2);
         assert!(standard_error(&values[..1]).is_nan());
         assert!((relative_spread(&[99.0, 101.0]) - 0.02).abs() < 1e-15);
+        assert!((line_slope(&[1.0, 3.0, 5.0, 7.0]) - 2.0).abs() < 1e-15 && line_slope(&[4.0]) == 0.0);
+        assert!((harmonic_mean(&[2.0, 6.0]) - 3.0).abs() < 1e-15);
     }
 }

@@ -40,7 +40,8 @@ fn results(out: &Path) -> Vec<(String, String)> {
     let mut points: Vec<PathBuf> =
         std::fs::read_dir(out.join("points")).expect("points").map(|e| e.expect("a point").path()).collect();
     points.sort();
-    for file in points.iter().flat_map(|p| [p.join("profile.csv"), p.join("history.csv")]) {
+    let names = ["profile.csv", "history.csv", "blocks.csv", "search.csv"];
+    for file in points.iter().flat_map(|p| names.map(|name| p.join(name))).filter(|file| file.exists()) {
         list.push((
             file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             std::fs::read_to_string(&file).expect("a table of the point"),
@@ -51,15 +52,32 @@ fn results(out: &Path) -> Vec<(String, String)> {
 
 #[test]
 fn a_killed_run_goes_on_with_the_same_bits() {
+    goes_on_with_the_same_bits(&smoke_case(), 2 * 3);
+}
+
+/// The bisection keeps a second state, the one that its trials start from, and its log.
+#[test]
+fn a_killed_bisection_goes_on_with_the_same_bits() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = folder.path().join("bisection.ron");
+    let search = "search: Bisection(samples: 1, rounds: 1, tolerance: \"60 m/s\"), points: [\"300 m/s\"],";
+    let text = std::fs::read_to_string(smoke_case()).expect("the case");
+    let text = text.replace("points: [\"200 m/s\", \"300 m/s\"],", search);
+    assert!(text.contains("Bisection"));
+    std::fs::write(&case, text).expect("a file");
+    goes_on_with_the_same_bits(&case, 4);
+}
+
+fn goes_on_with_the_same_bits(case: &Path, tables: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let straight = folder.path().join("straight through");
-    assert_eq!(finish(hugoniot(&smoke_case(), &straight, &[])).0, Some(0));
+    assert_eq!(finish(hugoniot(case, &straight, &[])).0, Some(0));
 
     let killed = folder.path().join("killed, often");
     // A state after each step: wherever it is killed, one is there or half written.
     let mut kills = 0;
     for milliseconds in [30, 150, 400, 90, 700, 250, 1100] {
-        let mut child = start(&smoke_case(), &killed, &["--resume", "--keep-every", "0.05"]);
+        let mut child = start(case, &killed, &["--resume", "--keep-every", "0.05"]);
         std::thread::sleep(Duration::from_millis(milliseconds));
         if child.try_wait().expect("a process").is_none() {
             child.kill().expect("it can be killed");
@@ -68,14 +86,15 @@ fn a_killed_run_goes_on_with_the_same_bits() {
         child.wait().expect("it ends");
     }
     assert!(kills >= 2, "the case is long enough to be killed in");
-    assert_eq!(finish(hugoniot(&smoke_case(), &killed, &["--resume"])), (Some(0), String::new()));
+    assert_eq!(finish(hugoniot(case, &killed, &["--resume"])), (Some(0), String::new()));
+    assert_eq!(results(&straight).len(), 1 + tables);
     for ((name, a), (_, b)) in results(&straight).iter().zip(&results(&killed)) {
         assert!(a == b, "{name} differs:\n{a}\n{b}");
     }
 
     // Once more: nothing is left to do, and nothing changes.
     let before = results(&killed);
-    assert_eq!(finish(hugoniot(&smoke_case(), &killed, &["--resume"])).0, Some(0));
+    assert_eq!(finish(hugoniot(case, &killed, &["--resume"])).0, Some(0));
     assert!(before == results(&killed));
 }
 

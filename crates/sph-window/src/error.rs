@@ -57,6 +57,20 @@ pub enum WindowError {
         /// Wanted place [m].
         wanted: f64,
     },
+    /// The bisection found no bracket in which the drift of the front changes its sign.
+    #[error(
+        "at t = {time:.4e} s the bisection has moved its bracket of outlet velocities time and again, now [{low:.1}, \
+         {high:.1}] m/s, and the drift of the front has one sign in all of it; hint: a bracket that holds u_s - u_p, or \
+         more samples a trial"
+    )]
+    NoBracket {
+        /// Time [s].
+        time: f64,
+        /// Lower end of the last bracket [m/s].
+        low: f64,
+        /// Upper end of the last bracket [m/s].
+        high: f64,
+    },
     /// The solver refused the particles or its settings.
     #[error(transparent)]
     Setup(#[from] SetupError),

@@ -27,7 +27,7 @@
 //!
 //! # Source
 //!
-//! Rublev & Murzov, arXiv 2410.14646, section 3, with frame tracking in place of the search by bisection.
+//! Rublev & Murzov, arXiv 2410.14646, section 3, with frame tracking beside the search by bisection.
 
 // Units in brackets, such as [Pa], read as links to rustdoc.
 #![allow(rustdoc::broken_intra_doc_links)]
@@ -45,6 +45,7 @@ pub mod search;
 pub mod settings;
 pub mod shock;
 pub mod state;
+mod steering;
 #[cfg(test)]
 mod testing;
 mod view;
@@ -58,10 +59,10 @@ pub use ledger::{Content, Ledger};
 pub use profile::{Profile, Slab};
 pub use region::{RegionWidths, Regions};
 pub use search::frame_tracking::Observation;
-pub use search::{FrameTracking, Search};
+pub use search::{Bisection, FrameTracking, Search};
 pub use settings::{PlateauMargins, WindowSettings};
 pub use shock::{Block, Estimate};
-pub use state::WindowState;
+pub use state::{Snapshot, WindowState};
 pub use window::{Window, WindowReport};
 
 /// The example of the README, compiled by the tests.

@@ -3,7 +3,7 @@
 use crate::error::WindowError;
 use crate::inlet::InletKind;
 use crate::region::{RegionWidths, Regions};
-use crate::search::Search;
+use crate::search::{Bisection, Search};
 use serde::{Deserialize, Serialize};
 
 /// Settings of a window. Lengths in particle sizes D refer to the largest particle of the sample.
@@ -182,7 +182,11 @@ impl WindowSettings {
     }
 
     fn search_checks(&self) -> Vec<(&'static str, f64, &'static str, bool, &'static str)> {
-        let Search::FrameTracking(tracking) = self.search else { return Vec::new() };
+        let tracking = match self.search {
+            Search::FixedFrame => return Vec::new(),
+            Search::Bisection(bisection) => return bisection_checks(&bisection),
+            Search::FrameTracking(tracking) => tracking,
+        };
         let (gain, pull, interval) = (tracking.gain, tracking.pull, tracking.interval);
         vec![
             ("search.gain", gain, "", gain > 0.0 && gain <= 1.0, "must lie above 0 and not above 1"),
@@ -190,6 +194,20 @@ impl WindowSettings {
             ("search.interval", interval, "D", interval > 0.0, "must be positive"),
         ]
     }
+}
+
+fn bisection_checks(b: &Bisection) -> Vec<(&'static str, f64, &'static str, bool, &'static str)> {
+    let (low, high) = b.bracket.unwrap_or((0.0, f64::MAX));
+    let part = b.half_width;
+    vec![
+        ("search.bracket", low, "m/s", low >= 0.0, "must not be negative"),
+        ("search.bracket", high, "m/s", high > low + b.tolerance, "must lie above the lower end"),
+        ("search.half_width", part, "", part > 0.0 && part < 1.0, "must lie between 0 and 1"),
+        ("search.samples", b.samples, "", b.samples >= 1.0, "must be 1 or more"),
+        ("search.tolerance", b.tolerance, "m/s", b.tolerance > 0.0, "must be positive"),
+        ("search.settle", b.settle, "", b.settle >= 0.0, "must not be negative"),
+        ("search.rounds", f64::from(b.rounds), "", b.rounds >= 1, "must be 1 or more"),
+    ]
 }
 
 #[cfg(test)]

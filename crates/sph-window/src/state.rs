@@ -5,10 +5,12 @@ use crate::frame::Frame;
 use crate::inlet::InletState;
 use crate::ledger::Ledger;
 use crate::plateau::MassBalance;
-use crate::search::Tracker;
+use crate::search::{Bisector, Tracker};
 use crate::search::frame_tracking::Observation;
 use crate::shock::ShockHistory;
 use serde::{Deserialize, Serialize};
+use sph_core::dimension::Dimension;
+use sph_core::particles::Particles;
 use sph_riemann::Clock;
 
 /// State of a window, without the particles (see [`crate::Window::save`]).
@@ -20,6 +22,17 @@ pub struct WindowState {
     pub clock: Clock,
     /// Everything else.
     pub progress: Progress,
+}
+
+/// A whole state, kept in memory: what the trials of a bisection start from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot<D: Dimension> {
+    /// All but the particles.
+    pub state: WindowState,
+    /// The particles, in their order.
+    pub particles: Particles<D>,
+    /// Positions that the neighbour lists were built from, by axis [m]; `None` if new ones are due.
+    pub list_positions: Option<Vec<Vec<f64>>>,
 }
 
 /// How far a window has come.
@@ -39,6 +52,8 @@ pub struct Progress {
     pub history: ShockHistory,
     /// Progress of frame tracking.
     pub tracker: Tracker,
+    /// Progress of a bisection. It is not taken back with the rest.
+    pub bisector: Bisector,
     /// Mass balance of the plateau since the start-up material left.
     pub balance: MassBalance,
     /// Way of the matter at the ends since the last exchange there [m].
@@ -62,6 +77,7 @@ impl Progress {
             ledger,
             history,
             tracker: Tracker::default(),
+            bisector: Bisector::default(),
             balance: MassBalance::default(),
             drift: 0.0,
             exchanged: 0.0,

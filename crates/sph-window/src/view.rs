@@ -7,10 +7,13 @@ use crate::ledger::{Content, Ledger};
 use crate::plateau;
 use crate::profile::{Grid, Profile};
 use crate::region::Regions;
+use crate::search::Search;
+use crate::search::bisection::Trial;
 use crate::settings::WindowSettings;
 use crate::shock::{Block, Estimate};
+use crate::state::Snapshot;
 use crate::window::Window;
-use sph_riemann::{Simulation, SolidDimension};
+use sph_riemann::{Simulation, SolidDimension, StageTimes};
 
 /// Length of the moving mean that finds the front, at least [D].
 const FRONT_WINDOW: f64 = 4.0;
@@ -166,6 +169,28 @@ impl<D: SolidDimension> Window<D> {
     /// One period of the medium.
     pub fn sample(&self) -> &FeedSample<D> {
         self.feed.sample()
+    }
+
+    /// What the bisection has tried so far; empty with another search.
+    pub fn audit(&self) -> &[Trial] {
+        self.progress.bisector.audit()
+    }
+
+    /// True while a bisection goes back to its saved state time and again: nothing is measured then.
+    pub fn is_searching(&self) -> bool {
+        matches!(self.settings.search, Search::Bisection(_)) && !self.progress.bisector.is_done()
+    }
+
+    /// The state that the trials of a bisection start from; a restart needs it.
+    pub fn snapshot(&self) -> Option<&Snapshot<D>> {
+        self.snapshot.as_ref()
+    }
+
+    /// Time by stage of the solver, that of trials which were taken back included.
+    pub fn stage_times(&self) -> StageTimes {
+        let mut stages = self.stages_before;
+        stages.merge(self.simulation.stage_times());
+        stages
     }
 
     /// The simulation.

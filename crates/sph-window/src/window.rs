@@ -11,19 +11,19 @@ use crate::error::WindowError;
 use crate::feed::{Feed, FeedSample};
 use crate::frame::Frame;
 use crate::inlet::{self, InletKind, Layer, LayerPlace};
-use crate::ledger::{Content, Ledger};
+use crate::ledger::{Content, Ledger, impose_velocity};
 use crate::outlet;
 use crate::region::Regions;
 use crate::search::Search;
-use crate::search::frame_tracking::{Observation, Target};
+use crate::search::frame_tracking::Observation;
 use crate::settings::WindowSettings;
 use crate::shock::ShockHistory;
-use crate::state::{Progress, WindowState};
+use crate::state::{Progress, Snapshot, WindowState};
 use sph_core::dimension::{Components, Dimension};
 use sph_core::domain::Domain;
 use sph_core::particles::{Constraint, Particles};
 use sph_materials::Material;
-use sph_riemann::{Settings, Simulation, SolidDimension, StepReport};
+use sph_riemann::{Settings, Simulation, SolidDimension, StageTimes, StepReport};
 
 /// Length of the layer inside of the inlet whose stress an impedance-matched inlet reads, at least [D].
 const INLET_LAYER: f64 = 8.0;
@@ -50,6 +50,10 @@ pub struct Window<D: SolidDimension> {
     pub(crate) settings: WindowSettings,
     pub(crate) regions: Regions,
     pub(crate) progress: Progress,
+    /// The state that the trials of a bisection start from.
+    pub(crate) snapshot: Option<Snapshot<D>>,
+    /// Time by stage of simulations that were taken back.
+    pub(crate) stages_before: StageTimes,
 }
 
 impl<D: SolidDimension> Window<D> {
@@ -76,7 +80,18 @@ impl<D: SolidDimension> Window<D> {
         let progress = Progress::new(frame, ledger, history);
         let regions = settings.regions_for(feed.sample().particle_size());
         let simulation = Simulation::new(domain(&feed, regions.length), materials, particles, solver)?;
-        Ok(Self { simulation, feed, settings, regions, progress })
+        Ok(Self::assemble(simulation, feed, settings, regions, progress))
+    }
+
+    fn assemble(
+        simulation: Simulation<D>,
+        feed: Feed<D>,
+        settings: WindowSettings,
+        regions: Regions,
+        progress: Progress,
+    ) -> Self {
+        let (snapshot, stages_before) = (None, StageTimes::default());
+        Self { simulation, feed, settings, regions, progress, snapshot, stages_before }
     }
 
     /// A window that goes on from a saved state with the same bits: its particles in their saved order, and the
@@ -100,7 +115,7 @@ impl<D: SolidDimension> Window<D> {
         let domain = domain(&feed, regions.length);
         let simulation =
             Simulation::restore(domain, materials, particles, solver, saved.clock, list_positions)?;
-        Ok(Self { simulation, feed, settings, regions, progress: saved.progress })
+        Ok(Self::assemble(simulation, feed, settings, regions, saved.progress))
     }
 
     /// The state beside [`Simulation::particles`] and [`Simulation::list_positions`]. Saving changes nothing: a run that
@@ -127,7 +142,10 @@ impl<D: SolidDimension> Window<D> {
         let step = self.simulation.step()?;
         self.book(&step);
         let observation = if exchange { Some(self.observe()?) } else { None };
-        let boost = observation.and_then(|observation| self.steer(&observation));
+        let boost = match &observation {
+            Some(observation) => self.steer(observation)?,
+            None => None,
+        };
         Ok(WindowReport { step, observation, boost })
     }
 
@@ -207,8 +225,11 @@ impl<D: SolidDimension> Window<D> {
         if front + 0.5 * self.grid().window > inlet {
             return Err(WindowError::FrontAtInlet { time, front, inlet });
         }
-        let waiting =
-            matches!(self.settings.search, Search::FrameTracking(_)) && !self.progress.tracker.arrived();
+        let waiting = match self.settings.search {
+            Search::FrameTracking(_) => !self.progress.tracker.arrived(),
+            Search::Bisection(_) => !self.progress.bisector.arrived(),
+            Search::FixedFrame => false,
+        };
         if waiting && now.swept > APPROACH_LIMIT * self.regions.length {
             let wanted = self.settings.wanted_front();
             return Err(WindowError::FrontNotArrived { time, swept: now.swept, front, wanted });
@@ -216,26 +237,33 @@ impl<D: SolidDimension> Window<D> {
         Ok(())
     }
 
-    /// Boosts the frame if frame tracking asks for it.
-    fn steer(&mut self, now: &Observation) -> Option<f64> {
-        let Search::FrameTracking(tracking) = self.settings.search else { return None };
-        let sample = self.feed.sample();
-        let target = Target {
-            front: self.settings.wanted_front(),
-            interval: sample.whole_periods(tracking.interval * sample.particle_size()),
-            inlet_velocity: self.inlet_velocity(),
-        };
-        let had_arrived = self.progress.tracker.arrived();
-        let wanted = self.progress.tracker.observe(now, &target, &tracking)?;
-        // An outlet that moves to the right would bring matter back in.
-        let velocity = wanted.min(self.progress.frame.outlet_velocity());
-        self.boost(velocity);
-        if !had_arrived {
-            // What is behind the front now leaves with u_out, while the front sweeps with u_in.
-            let ratio = self.progress.frame.inlet_velocity() / self.progress.frame.outlet_velocity();
-            self.progress.settled_from = Some(now.swept + now.front * ratio);
+    /// Holds a part of the medium where it is: a body in the stream. The particles for whose place `inside` holds get the
+    /// velocity zero, which nothing changes from then on. For windows of a fixed frame.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError::Setting`] when the search changes the frame, and when the body is nowhere, or not between the outlet
+    /// and the middle of the flow: further right the inlet would set it free.
+    pub fn hold(&mut self, inside: impl Fn(D::Vector) -> bool) -> Result<(), WindowError> {
+        let (from, to) = (self.regions.outlet_end, self.regions.middle());
+        let bad = |field, value, reason| Err(WindowError::Setting { field, value, unit: "m", reason });
+        if self.settings.search != Search::FixedFrame {
+            return bad("search", 0.0, "must be FixedFrame, or the body would move with the frame");
         }
-        Some(velocity)
+        let particles = self.simulation.particles_mut();
+        let body: Vec<usize> = (0..particles.len()).filter(|&i| inside(particles.position_of(i))).collect();
+        if body.is_empty() {
+            return bad("body", 0.0, "must hold a particle of the medium");
+        }
+        let outside = |&&i: &&usize| !(from..to).contains(&particles.position[0][i]);
+        if let Some(&i) = body.iter().find(outside) {
+            return bad("body", particles.position[0][i], "must lie between the outlet and the middle of the flow");
+        }
+        for i in body {
+            self.progress.ledger.impose(impose_velocity(particles, i, D::vector(|_| 0.0)));
+            particles.constraint[i] = Constraint::ImposedVelocity;
+        }
+        Ok(())
     }
 
     /// Changes the frame: adds one velocity along x [m/s] to everything, imposed velocities included.
@@ -273,7 +301,7 @@ fn check_layer<D: Dimension>(sample: &FeedSample<D>, settings: &WindowSettings) 
 }
 
 /// The box: periodic across, open along x.
-fn domain<D: Dimension>(feed: &Feed<D>, length: f64) -> Domain<D> {
+pub(crate) fn domain<D: Dimension>(feed: &Feed<D>, length: f64) -> Domain<D> {
     let cell = feed.sample().cell();
     let along = |axis: usize, x: f64, across: f64| if axis == 0 { x } else { across };
     Domain::new(

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use sph_materials::Material;
 use sph_riemann::Settings;
-use sph_window::InletKind;
+use sph_window::{InletKind, Search};
 
 pub use super::medium::{Medium, Packing, Pores};
 
@@ -24,6 +24,8 @@ pub struct Case {
     pub scheme: Settings,
     /// The moving window.
     pub window: WindowCase,
+    /// How the frame in which the front stands is found.
+    pub search: Search,
     /// Particle velocities u_p [m/s], rising; with a refinement those of the first round.
     pub points: Vec<f64>,
     /// How further points are chosen from finished ones; `None`: there are no further ones.
@@ -118,9 +120,14 @@ impl Stop {
         self.startup_cells.unwrap_or(window_cells)
     }
 
+    /// Successive blocks that must agree in a window of `window_cells` cells.
+    pub fn blocks_at(&self, _window_cells: usize) -> usize {
+        self.blocks
+    }
+
     /// Fewest cells that a point feeds in a window of `window_cells` cells.
     pub fn least_fed_cells(&self, window_cells: usize) -> usize {
-        self.startup_at(window_cells) + self.blocks * self.block_cells
+        self.startup_at(window_cells) + self.blocks_at(window_cells) * self.block_cells
     }
 }
 

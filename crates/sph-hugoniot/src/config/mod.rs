@@ -15,6 +15,7 @@ mod resolve_material;
 mod resolve_medium;
 mod resolve_points;
 mod resolve_scheme;
+mod resolve_search;
 pub mod schema;
 pub mod schema_medium;
 pub mod syntax;

@@ -34,6 +34,7 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
     let data = r.data(&schema.data);
     let scheme = r.group(&schema.scheme, |s| r.scheme(s));
     let window = r.group(&schema.window, |w| r.window(w));
+    let search = r.search(&schema.search);
     let stop = r.group(&schema.stop, |s| r.stop(s));
     let output = r.group(&schema.output, |o| r.output(o, name.as_deref()));
     let (points, refinement) = points.unzip();
@@ -43,6 +44,9 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
     if let (Some(window), Some(points), Some(stop)) = (&window, &points, &stop) {
         r.points_can_settle(schema, window, points, stop);
     }
+    if let (Some([material, ..]), Some(medium), Some(points)) = (materials.as_deref(), &medium, &points) {
+        r.fronts_separate(&schema.points, material, medium.porosity, points);
+    }
     let mut materials = materials?.into_iter();
     let case = Case {
         name: name?,
@@ -51,6 +55,7 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
         medium: medium?,
         scheme: scheme?,
         window: window?,
+        search: search?,
         points: points?,
         refinement: refinement?,
         stop: stop?,

@@ -27,6 +27,8 @@ pub struct CaseSchema {
     pub scheme: Field<SchemeSchema>,
     /// The moving window.
     pub window: Field<WindowSchema>,
+    /// How the frame in which the front stands is found.
+    pub search: Field<SearchSchema>,
     /// Particle velocities u_p.
     pub points: Field<PointsSchema>,
     /// When a point has settled.
@@ -304,6 +306,31 @@ pub enum LengthSchema {
     Auto,
     /// Number of cells.
     Cells(Field<Count>),
+}
+
+/// How the frame in which the front stands is found.
+#[derive(Debug, Deserialize)]
+pub enum SearchSchema {
+    /// Boosts by the measured drift of the front.
+    Tracking,
+    /// The published search.
+    Bisection(BisectionSchema),
+}
+
+/// The published search: bisection of the outlet velocity, each trial from a saved state.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BisectionSchema {
+    /// Lower end of the first bracket of u_out.
+    pub outlet_from: Field<Velocity>,
+    /// Upper end of the first bracket of u_out.
+    pub outlet_to: Field<Velocity>,
+    /// Cells fed in a trial.
+    pub samples: Field<Count>,
+    /// Width of the bracket at which a round ends.
+    pub tolerance: Field<Velocity>,
+    /// Rounds of bisection.
+    pub rounds: Field<Count>,
 }
 
 /// When a point has settled.

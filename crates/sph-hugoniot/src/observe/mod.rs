@@ -2,9 +2,11 @@
 //! and the particles at the end.
 
 mod fields;
+mod precursor;
 mod profile;
 mod states;
 
 pub use fields::{Fields, drawn_size};
+pub use precursor::{Precursor, PrecursorWatch};
 pub use profile::{Bin, FrontProfile, ProfileGrid};
-pub use states::{MeanState, States};
+pub use states::{MeanState, States, Zone};

@@ -51,7 +51,7 @@ impl From<Bin> for MeanState {
 
 impl MeanState {
     /// The state as the jump conditions see it: fluctuations counted as stress and energy.
-    fn as_shock_state(&self) -> ShockState {
+    pub(super) fn as_shock_state(&self) -> ShockState {
         ShockState {
             density: self.packing_density,
             particle_velocity: self.velocity,
@@ -62,6 +62,31 @@ impl MeanState {
     }
 }
 
+/// Packing over own density from which on pores count as shut.
+const SHUT: f64 = 0.995;
+/// Room ahead of the front that the state there needs: its own margins, and a cell [cells].
+const ROOM_AHEAD: f64 = 3.5;
+/// Part of the velocity jump within which matter counts as relaxed.
+const RELAXED: f64 = 0.02;
+
+/// What stands behind the compaction wave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Zone {
+    /// Solid: packing and own density agree to half a percent.
+    PoresShut,
+    /// A medium with smaller pores.
+    PoresOpen,
+}
+
+impl std::fmt::Display for Zone {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::PoresShut => "shut",
+            Self::PoresOpen => "open",
+        })
+    }
+}
+
 /// Both states.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct States {
@@ -69,6 +94,12 @@ pub struct States {
     pub ahead: MeanState,
     /// Behind the compaction wave.
     pub behind: MeanState,
+    /// How far behind the front the matter still moves differently from the state behind, over a cell's mean [m].
+    pub relaxation_length: f64,
+    /// How far behind the front there is room in the window [m].
+    pub room_behind: f64,
+    /// How far ahead of the front there is room in the window [m].
+    pub room_ahead: f64,
 }
 
 impl States {
@@ -84,7 +115,45 @@ impl States {
         let behind = profile.between(low + margins.outlet * particle_size, -margins.front * particle_size)?;
         // Ahead the front ends sharply; the last cell before the inlet feels the imposed velocity.
         let ahead = profile.between((2.0 * cell).min(0.4 * high), high - cell.min(0.2 * high))?;
-        Some(Self { ahead: ahead.into(), behind: behind.into() })
+        let relaxation_length = relaxation_length(profile, &ahead, &behind, cell);
+        Some(Self { ahead: ahead.into(), behind: behind.into(), relaxation_length, room_behind: -low, room_ahead: high })
+    }
+
+    /// What stands behind the compaction wave.
+    pub fn zone(&self) -> Zone {
+        let shut = self.behind.packing_density / self.behind.own_density >= SHUT;
+        if shut { Zone::PoresShut } else { Zone::PoresOpen }
+    }
+
+    /// Volume of pores over volume of space behind the compaction wave [-].
+    pub fn pores_left(&self) -> f64 {
+        1.0 - self.behind.packing_density / self.behind.own_density
+    }
+
+    /// What is doubtful about states in a window of so many cells of a length [m] with the front at this part of it.
+    pub fn warnings(&self, cell: f64, window_cells: usize, front_place: f64) -> Vec<String> {
+        let mut list = Vec::new();
+        let in_cells = |length: f64| length / cell;
+        // The state behind is read where the matter has relaxed: three cells of that must be left.
+        let needed = self.relaxation_length + 3.0 * cell;
+        if needed > self.room_behind {
+            let cells = (in_cells(needed + 1.5 * cell) / front_place).ceil().max(window_cells as f64 + 2.0);
+            list.push(format!(
+                "the matter still relaxes {:.1} cells behind the front, and the window has room for {:.1}; hint: window: \
+                 (length: Cells({cells}))",
+                in_cells(self.relaxation_length),
+                in_cells(self.room_behind),
+            ));
+        }
+        if self.room_ahead < ROOM_AHEAD * cell {
+            list.push(format!(
+                "the window has room for {:.1} cells ahead of the front, too few for the state behind the precursor; hint: \
+                 window: (length: Cells({})), or a smaller front_place than {front_place}",
+                in_cells(self.room_ahead),
+                (window_cells as f64 * (ROOM_AHEAD + 0.5) * cell / self.room_ahead).ceil(),
+            ));
+        }
+        list
     }
 
     /// Rise of -σ_xx across the compaction wave [Pa].
@@ -106,6 +175,21 @@ impl States {
             wave_speed: shock_velocity,
         }
     }
+}
+
+/// Distance from the front to the farthest cell behind it whose mean velocity is not that of the state behind; the last
+/// cell, which feels the outlet, is left out.
+fn relaxation_length(profile: &FrontProfile, ahead: &Bin, behind: &Bin, cell: f64) -> f64 {
+    let jump = (behind.velocity - ahead.velocity).abs();
+    let mut place = profile.range().0 + cell;
+    while place + cell <= 0.0 {
+        let bin = profile.between(place, place + cell);
+        if bin.is_some_and(|bin| (bin.velocity - behind.velocity).abs() > RELAXED * jump) {
+            return -place;
+        }
+        place += 0.5 * cell;
+    }
+    0.0
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@
 //! case.ron            the case file, as it was read
 //! case.json           the resolved case in SI
 //! hugoniot.csv, .json the table of all finished points
-//! points/up_0100/     profile.csv, history.csv and monitors.csv of one point; its outcome, or its last states (crate::restart)
+//! points/up_0100/     profile, history, monitors and blocks (and search) .csv of one point; its outcome, or its last states
+//!                     (crate::restart)
 //! curve/              the curve in all planes, fits, P-α parameters ([`export`])
 //! plots/              hugoniot, profiles, histories, fields
 //! ```
@@ -21,6 +22,8 @@ pub mod machine;
 pub mod monitors;
 pub mod planes;
 pub mod plots;
+pub mod point_tables;
+pub mod profile_plots;
 pub mod summary;
 pub mod table;
 
@@ -76,7 +79,7 @@ impl Report {
         std::fs::create_dir_all(&folder)?;
         if !outcome.profile.is_empty() {
             table::profile(outcome).write_csv(folder.join("profile.csv"))?;
-            self.write_figure(&plots::profile(outcome), &format!("profile_{stem}"))?;
+            self.write_figure(&profile_plots::profile(outcome), &format!("profile_{stem}"))?;
         }
         if !outcome.cell_velocities.is_empty() {
             table::history(outcome).write_csv(folder.join("history.csv"))?;
@@ -85,8 +88,14 @@ impl Report {
         if !outcome.monitors.is_empty() {
             monitors::table(outcome).write_csv(folder.join("monitors.csv"))?;
         }
+        if !outcome.blocks.is_empty() {
+            point_tables::blocks(outcome).write_csv(folder.join("blocks.csv"))?;
+        }
+        if !outcome.search.is_empty() {
+            point_tables::search(outcome).write_csv(folder.join("search.csv"))?;
+        }
         if case.output.images && !outcome.fields.x.is_empty() {
-            plots::fields(outcome).write_png(self.plot(&format!("fields_{stem}.png")))?;
+            profile_plots::fields(outcome).write_png(self.plot(&format!("fields_{stem}.png")))?;
         }
         Ok(())
     }

@@ -16,8 +16,9 @@ pub fn line(outcome: &PointOutcome) -> String {
         status => {
             let (u_s, error) = (outcome.shock_velocity, outcome.standard_error);
             let (cells, time) = (outcome.fed_cells, outcome.wall_seconds);
+            let warnings: String = outcome.warnings.iter().map(|w| format!("\n  warning: {w}")).collect();
             format!(
-                "u_p = {u_p} m/s: u_s = {u_s:.1} ± {error:.1} m/s, {status}, {cells:.1} cells fed in {time:.1} s"
+                "u_p = {u_p} m/s: u_s = {u_s:.1} ± {error:.1} m/s, {status}, {cells:.1} cells fed in {time:.1} s{warnings}"
             )
         }
     }

@@ -11,16 +11,19 @@ use crate::outcome::PointOutcome;
 pub(super) type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
 
 /// What is measured of a point.
-const MEASURED: [Number<PointOutcome>; 13] = [
+const MEASURED: [Number<PointOutcome>; 22] = [
     ("u_p", "m/s", "particle velocity behind the front, imposed", |o| o.particle_velocity),
     ("u_s", "m/s", "shock velocity relative to the medium ahead, from the front's way", |o| o.shock_velocity),
-    ("u_s_error", "m/s", "standard error of u_s over whole cells, batch means", |o| o.standard_error),
+    ("u_s_error", "m/s", "uncertainty of u_s: batch means over whole cells, and slow drift", |o| o.standard_error),
     ("u_s_mass", "m/s", "shock velocity from the mass of the plateau", |o| o.mass_balance_velocity),
     ("stress_jump", "Pa", "rise of -sigma_xx across the compaction wave", |o| {
         o.states.map_or(f64::NAN, |s| s.stress_jump())
     }),
     ("sigma_hel", "Pa", "-sigma_xx between precursor and compaction wave", |o| {
         o.states.map_or(f64::NAN, |s| -s.ahead.stress)
+    }),
+    ("stress_final", "Pa", "-sigma_xx behind the compaction wave: stress_jump + sigma_hel", |o| {
+        behind(o, |s| -s.stress)
     }),
     ("rho_packing", "kg/m3", "density behind: mass per volume of space", |o| {
         behind(o, |s| s.packing_density)
@@ -35,6 +38,30 @@ const MEASURED: [Number<PointOutcome>; 13] = [
     }),
     ("residual_energy", "", "miss of the jump condition of energy", |o| {
         o.residuals.map_or(f64::NAN, |r| r.energy)
+    }),
+    ("pores_left", "", "volume of pores over volume of space behind", |o| {
+        o.states.map_or(f64::NAN, |s| s.pores_left())
+    }),
+    ("relaxation_length", "m", "how far behind the front the matter still relaxes", |o| {
+        o.states.map_or(f64::NAN, |s| s.relaxation_length)
+    }),
+    ("precursor_speed", "m/s", "speed of the middle of the elastic precursor, on its first way", |o| {
+        o.precursor.map_or(f64::NAN, |p| p.speed)
+    }),
+    ("precursor_u", "m/s", "particle velocity behind the precursor, on its first way", |o| {
+        o.precursor.map_or(f64::NAN, |p| p.behind.velocity)
+    }),
+    ("precursor_stress", "Pa", "-sigma_xx behind the precursor, on its first way", |o| {
+        o.precursor.map_or(f64::NAN, |p| -p.behind.stress)
+    }),
+    ("precursor_residual_mass", "", "miss of the precursor's jump condition of mass", |o| {
+        o.precursor_residuals.map_or(f64::NAN, |r| r.mass)
+    }),
+    ("precursor_residual_momentum", "", "miss of the precursor's jump condition of momentum", |o| {
+        o.precursor_residuals.map_or(f64::NAN, |r| r.momentum)
+    }),
+    ("precursor_residual_energy", "", "miss of the precursor's jump condition of energy", |o| {
+        o.precursor_residuals.map_or(f64::NAN, |r| r.energy)
     }),
     ("u_p_effective", "m/s", "u_p that the ends of the window imposed", |o| o.effective_particle_velocity),
 ];
@@ -98,11 +125,10 @@ pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Tab
         .with(whole("averaged_cells", "cells that u_s is averaged over", |o| o.averaged_cells as i64))
         .with(whole("steps", "steps made", |o| o.steps as i64))
         .with(whole("particles", "particles in the window at the end", |o| o.particles as i64));
-    super::monitors::with_worst(add(table, &SPENT, outcomes), outcomes).with(Column::text(
-        "status",
-        "how the point ended",
-        status,
-    ))
+    let pores = |o: &PointOutcome| o.states.map_or_else(String::new, |s| s.zone().to_string());
+    super::monitors::with_worst(add(table, &SPENT, outcomes), outcomes)
+        .with(Column::text("pores", "open or shut behind", outcomes.iter().map(|o| pores(o)).collect::<Vec<_>>()))
+        .with(Column::text("status", "how the point ended", status))
 }
 
 /// The averaged profile of a point.

@@ -10,7 +10,7 @@
 //! wanted place \\( x_w \\). The drift and place of one interval map to the next with the matrix \\( (1, 1; -p, 1-g-p) \\),
 //! whose eigenvalues have the modulus \\( \sqrt{1-g} \\) and little turn: it settles without ringing.
 //!
-//! This is ours; it replaces the search by bisection of Rublev & Murzov, arXiv 2410.14646, section 3.1.
+//! This is ours; the published search, [`super::bisection`], is that of Rublev & Murzov, arXiv 2410.14646, section 3.1.
 
 use serde::{Deserialize, Serialize};
 

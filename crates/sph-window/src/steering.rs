@@ -117,7 +117,7 @@ impl<D: SolidDimension> Window<D> {
         let clock =
             Clock { step_count: spent.step_count, particle_steps: spent.particle_steps, ..saved.state.clock };
         let materials = self.simulation.materials().to_vec();
-        let settings = self.simulation.settings().clone();
+        let settings = *self.simulation.settings();
         self.feed = Feed::restore(self.feed.sample().clone(), saved.state.feed)?;
         let domain = domain(&self.feed, self.regions.length);
         let lists = saved.list_positions.as_deref();

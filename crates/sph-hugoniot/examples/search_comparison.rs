@@ -126,13 +126,16 @@ impl Study {
         }
         let velocity = window.frame().inlet_velocity();
         // What the drift of the front says in the frame that was found: its error is that of the search.
-        let round = |n: u32| window.audit().iter().rev().find(|t| t.round == n).map_or(f64::NAN, |t| t.inlet_velocity);
+        let round = |n: u32| {
+            window.audit().iter().rev().find(|t| t.round == n).map_or(f64::NAN, |t| t.inlet_velocity)
+        };
         Ok(Outcome { name: "bisection", trace, velocity, noise: (round(2) - round(1)).abs() })
     }
 
     /// A long sample at rest with a piston that starts at once.
     fn rest_frame(&self, cells: usize) -> Result<Outcome, Box<dyn Error>> {
-        let speed = sph_hugoniot::estimate::shock_velocity(&self.case, self.sample.porosity, self.particle_velocity);
+        let speed =
+            sph_hugoniot::estimate::shock_velocity(&self.case, self.sample.porosity, self.particle_velocity);
         let length = (0.5 * cells as f64 * (1.0 + PRECURSOR / speed)).ceil() as usize + 1;
         let mut simulation = self.long_sample(length)?;
         let (cell, size) = (self.sample.cell, self.case.medium.particle_size);
@@ -189,12 +192,16 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let particle_velocity = std::env::args().nth(1).map_or(Ok(case.points[0]), |text| text.parse())?;
     let study = Study { case, sample, particle_velocity };
     let (tracking, reference) = study.tracking()?;
-    println!("u_p = {particle_velocity} m/s, reference {reference:.1} m/s, mean of {REFERENCE_CELLS} cells\n");
+    println!(
+        "u_p = {particle_velocity} m/s, reference {reference:.1} m/s, mean of {REFERENCE_CELLS} cells\n"
+    );
     println!("bisection, every trial:");
     let bisection = study.bisection()?;
     println!("\nlong sample in the rest frame:");
     let rest = study.rest_frame(24)?;
-    println!("\n| method | u_s, m/s | off, % | noise, m/s | particle-steps to stay within 1 % | against tracking |");
+    println!(
+        "\n| method | u_s, m/s | off, % | noise, m/s | particle-steps to stay within 1 % | against tracking |"
+    );
     println!("|---|---|---|---|---|---|");
     let least = cost(&tracking.trace, reference).unwrap_or(u64::MAX) as f64;
     for result in [&tracking, &bisection, &rest] {

@@ -281,7 +281,8 @@ fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions, color: b
         points.dedup();
         let (material, porosity) = (&case.material, case.medium.porosity);
         let refusals = points.iter().filter_map(|&u| crate::separation::refusal(material, porosity, u));
-        let refusals: Vec<String> = refusals.map(|(text, hint)| format!("error: {text}; hint: {hint}")).collect();
+        let refusals: Vec<String> =
+            refusals.map(|(text, hint)| format!("error: {text}; hint: {hint}")).collect();
         if !refusals.is_empty() {
             eprintln!("{}", refusals.join("\n"));
             return Ok(BAD_INPUT);

@@ -247,7 +247,14 @@ impl<'c> Point<'c> {
         let first = first / self.sample.cell;
         let record = settle::judge(&self.cell_velocities(), first, &self.case.stop, self.blocks());
         let u_p = self.particle_velocity;
-        tracing::info!(u_p, cells = record.to, u_s = record.mean, error = record.error, "{}", record.decision);
+        tracing::info!(
+            u_p,
+            cells = record.to,
+            u_s = record.mean,
+            error = record.error,
+            "{}",
+            record.decision
+        );
         self.progress.log.push(record);
         record.decision
     }
@@ -356,7 +363,8 @@ impl<'c> Point<'c> {
         let margins = window.settings().plateau;
         let (cell, size) = (self.sample.cell, self.case.medium.particle_size);
         let is_whole = self.full_blocks() > 0;
-        let states = profile.as_ref().filter(|_| is_whole).and_then(|p| States::read(p, &margins, cell, size));
+        let states =
+            profile.as_ref().filter(|_| is_whole).and_then(|p| States::read(p, &margins, cell, size));
         let shock_velocity = if cells.is_empty() { f64::NAN } else { harmonic_mean(&cells) };
         let simulation = window.simulation();
         PointOutcome {

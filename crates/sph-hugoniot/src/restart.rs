@@ -191,18 +191,23 @@ fn list_names() -> Vec<String> {
     ["x", "y", "z"][..Dim2::COUNT].iter().map(|axis| format!("list_{axis}")).collect()
 }
 
+/// Particles, and the positions that their neighbour lists were built from.
+type Moment = (Particles<Dim2>, Option<Vec<Vec<f64>>>);
+
 /// Particles and list positions under names with a prefix.
 fn read_moment(
     from: &mut Checkpoint<SavedPoint>,
     prefix: &str,
     has_lists: bool,
-) -> Result<(Particles<Dim2>, Option<Vec<Vec<f64>>>)> {
+) -> Result<Moment> {
     let particles = read_particles(from, prefix)?;
     if !has_lists {
         return Ok((particles, None));
     }
-    let lists =
-        list_names().iter().map(|name| from.take_f64(&format!("{prefix}{name}"))).collect::<Result<_, _>>()?;
+    let lists = list_names()
+        .iter()
+        .map(|name| from.take_f64(&format!("{prefix}{name}")))
+        .collect::<Result<_, _>>()?;
     Ok((particles, Some(lists)))
 }
 

@@ -97,7 +97,10 @@ mod tests {
         assert!((950.0..1150.0).contains(&limit), "{limit}");
         assert!(refusal(&copper(), 1.35, 300.0).is_none());
         let (message, hint) = refusal(&copper(), 1.35, 1500.0).unwrap();
-        assert!(message.contains("overruns the elastic precursor, which runs at 3.5 km/s at most"), "{message}");
+        assert!(
+            message.contains("overruns the elastic precursor, which runs at 3.5 km/s at most"),
+            "{message}"
+        );
         assert!(hint.starts_with("below "), "{hint}");
     }
 

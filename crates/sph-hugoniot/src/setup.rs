@@ -40,7 +40,9 @@ pub fn window_settings(case: &Case, particle_velocity: f64) -> WindowSettings {
 /// The search, with boosts once a cell of so many particle sizes.
 fn search(search: Search, cell: f64) -> Search {
     match search {
-        Search::FrameTracking(tracking) => Search::FrameTracking(FrameTracking { interval: cell, ..tracking }),
+        Search::FrameTracking(tracking) => {
+            Search::FrameTracking(FrameTracking { interval: cell, ..tracking })
+        }
         other => other,
     }
 }

@@ -92,7 +92,10 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("a stream of {STREAM} m/s onto a plate, {} steps", window.steps());
     println!("e + P/ρ + u²/2 ahead of the plate: {total:.3} of U²/2, expected 1");
     let (u, pressure) = (layer.mean(layer.velocity), layer.mean(layer.pressure));
-    println!("behind the bow shock: {u:.0} m/s, {:.0} GPa; at the shock itself -5287 m/s, 194 GPa", pressure / 1e9);
+    println!(
+        "behind the bow shock: {u:.0} m/s, {:.0} GPa; at the shock itself -5287 m/s, 194 GPa",
+        pressure / 1e9
+    );
     println!("the ledger closes to {:.1e}", window.ledger_residual());
     if (total - 1.0).abs() > 0.1 {
         return Err("the total enthalpy is off by more than a tenth".into());

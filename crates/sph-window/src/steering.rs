@@ -110,7 +110,9 @@ impl<D: SolidDimension> Window<D> {
     /// Takes the saved state back. The counts of what was spent, and the log of the bisection, go on.
     fn take_back(&mut self) -> Result<(), WindowError> {
         let Some(saved) = self.snapshot.clone() else {
-            return Err(WindowError::State("the state that the bisection started from is missing".to_string()));
+            return Err(WindowError::State(
+                "the state that the bisection started from is missing".to_string(),
+            ));
         };
         self.stages_before.merge(self.simulation.stage_times());
         let spent = self.simulation.clock();

@@ -257,7 +257,11 @@ impl<D: SolidDimension> Window<D> {
         }
         let outside = |&&i: &&usize| !(from..to).contains(&particles.position[0][i]);
         if let Some(&i) = body.iter().find(outside) {
-            return bad("body", particles.position[0][i], "must lie between the outlet and the middle of the flow");
+            return bad(
+                "body",
+                particles.position[0][i],
+                "must lie between the outlet and the middle of the flow",
+            );
         }
         for i in body {
             self.progress.ledger.impose(impose_velocity(particles, i, D::vector(|_| 0.0)));

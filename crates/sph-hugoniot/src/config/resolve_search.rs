@@ -64,14 +64,16 @@ impl Resolver<'_> {
         let (from, to) = match (&b.outlet_from, &b.outlet_to) {
             (Field::Absent, Field::Absent) => return Some(None),
             (Field::Absent, given) | (given, Field::Absent) => {
-                let hint = "both ends of the bracket, or none: then it lies about the speed of the front on its way";
+                let hint =
+                    "both ends of the bracket, or none: then it lies about the speed of the front on its way";
                 self.refuse(given.span()?, "one end of a bracket is given".into(), hint);
                 return None;
             }
             (from, to) => (self.quantity(from, OUTLET.0, OUTLET.1)?, self.quantity(to, OUTLET.0, OUTLET.1)?),
         };
         if from >= to {
-            let message = format!("the bracket ends at {}, where it starts or before", show::<VelocityKind>(to));
+            let message =
+                format!("the bracket ends at {}, where it starts or before", show::<VelocityKind>(to));
             let hint = format!("above `outlet_from`, {}", show::<VelocityKind>(from));
             self.refuse(b.outlet_to.span()?, message, &hint);
             return None;

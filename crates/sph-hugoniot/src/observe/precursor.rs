@@ -115,10 +115,8 @@ impl PrecursorWatch {
         let middle = self.crossing(last, 0.5 * guess)?;
         let (from, to) = (MARGIN * cell, middle - MARGIN * cell - last.front);
         let regions = window.regions();
-        let mut profile = FrontProfile::new(
-            ProfileGrid::new(0.5 * cell, regions.length),
-            window.sample().cross_section(),
-        );
+        let mut profile =
+            FrontProfile::new(ProfileGrid::new(0.5 * cell, regions.length), window.sample().cross_section());
         profile.observe(window, last.front, 1.0);
         let behind: MeanState = profile.between(from, to)?.into();
         Some(Precursor { speed: self.speed(last, 0.5 * behind.velocity)?, behind })
@@ -134,9 +132,9 @@ impl PrecursorWatch {
         let late = &places[places.len() / 2..];
         let n = late.len() as f64;
         let (mean_t, mean_x) = late.iter().fold((0.0, 0.0), |s, p| (s.0 + p.0 / n, s.1 + p.1 / n));
-        let (product, square) = late.iter().fold((0.0, 0.0), |s, p| {
-            (s.0 + (p.0 - mean_t) * (p.1 - mean_x), s.1 + (p.0 - mean_t).powi(2))
-        });
+        let (product, square) = late
+            .iter()
+            .fold((0.0, 0.0), |s, p| (s.0 + (p.0 - mean_t) * (p.1 - mean_x), s.1 + (p.0 - mean_t).powi(2)));
         (late.len() >= 4 && square > 0.0).then(|| product / square)
     }
 }

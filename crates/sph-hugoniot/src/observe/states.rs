@@ -116,7 +116,13 @@ impl States {
         // Ahead the front ends sharply; the last cell before the inlet feels the imposed velocity.
         let ahead = profile.between((2.0 * cell).min(0.4 * high), high - cell.min(0.2 * high))?;
         let relaxation_length = relaxation_length(profile, &ahead, &behind, cell);
-        Some(Self { ahead: ahead.into(), behind: behind.into(), relaxation_length, room_behind: -low, room_ahead: high })
+        Some(Self {
+            ahead: ahead.into(),
+            behind: behind.into(),
+            relaxation_length,
+            room_behind: -low,
+            room_ahead: high,
+        })
     }
 
     /// What stands behind the compaction wave.

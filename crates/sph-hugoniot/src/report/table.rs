@@ -14,7 +14,9 @@ pub(super) type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row
 const MEASURED: [Number<PointOutcome>; 22] = [
     ("u_p", "m/s", "particle velocity behind the front, imposed", |o| o.particle_velocity),
     ("u_s", "m/s", "shock velocity relative to the medium ahead, from the front's way", |o| o.shock_velocity),
-    ("u_s_error", "m/s", "uncertainty of u_s: batch means over whole cells, and slow drift", |o| o.standard_error),
+    ("u_s_error", "m/s", "uncertainty of u_s: batch means over whole cells, and slow drift", |o| {
+        o.standard_error
+    }),
     ("u_s_mass", "m/s", "shock velocity from the mass of the plateau", |o| o.mass_balance_velocity),
     ("stress_jump", "Pa", "rise of -sigma_xx across the compaction wave", |o| {
         o.states.map_or(f64::NAN, |s| s.stress_jump())
@@ -127,7 +129,11 @@ pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Tab
         .with(whole("particles", "particles in the window at the end", |o| o.particles as i64));
     let pores = |o: &PointOutcome| o.states.map_or_else(String::new, |s| s.zone().to_string());
     super::monitors::with_worst(add(table, &SPENT, outcomes), outcomes)
-        .with(Column::text("pores", "open or shut behind", outcomes.iter().map(|o| pores(o)).collect::<Vec<_>>()))
+        .with(Column::text(
+            "pores",
+            "open or shut behind",
+            outcomes.iter().map(|o| pores(o)).collect::<Vec<_>>(),
+        ))
         .with(Column::text("status", "how the point ended", status))
 }
 

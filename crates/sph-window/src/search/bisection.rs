@@ -243,7 +243,13 @@ impl Bisector {
     }
 
     /// On the way to the wanted place: as frame tracking does it.
-    fn approach(&mut self, look: &Look, around: &Surroundings, settings: &Bisection, first: usize) -> Option<Order> {
+    fn approach(
+        &mut self,
+        look: &Look,
+        around: &Surroundings,
+        settings: &Bisection,
+        first: usize,
+    ) -> Option<Order> {
         let boost = self.approach.observe(&look.now, &around.target, &FrameTracking::default())?;
         let speed = around.target.inlet_velocity - boost;
         self.outlet_velocity = around.target.inlet_velocity - around.particle_velocity;
@@ -326,17 +332,23 @@ impl Bisector {
     /// The end of the run between two rounds: the next bracket is as wide as the first and lies about the result.
     fn next_round(&mut self, look: &Look, around: &Surroundings, settings: &Bisection) -> Order {
         let drift = self.slope.get();
-        let half = settings
-            .bracket
-            .map_or(settings.half_width * (self.outlet_velocity + around.particle_velocity), |(low, high)| {
-                0.5 * (high - low)
-            });
+        let half = settings.bracket.map_or(
+            settings.half_width * (self.outlet_velocity + around.particle_velocity),
+            |(low, high)| 0.5 * (high - low),
+        );
         self.bracket = ((self.outlet_velocity - half).max(0.0), self.outlet_velocity + half);
         self.book(look, around, Stage::Settle, Some(drift), Decision::Saved);
         self.begin_round(look)
     }
 
-    fn book(&mut self, look: &Look, around: &Surroundings, stage: Stage, drift: Option<f64>, decision: Decision) {
+    fn book(
+        &mut self,
+        look: &Look,
+        around: &Surroundings,
+        stage: Stage,
+        drift: Option<f64>,
+        decision: Decision,
+    ) {
         self.audit.push(Trial {
             round: self.round,
             stage,

@@ -195,11 +195,7 @@ fn list_names() -> Vec<String> {
 type Moment = (Particles<Dim2>, Option<Vec<Vec<f64>>>);
 
 /// Particles and list positions under names with a prefix.
-fn read_moment(
-    from: &mut Checkpoint<SavedPoint>,
-    prefix: &str,
-    has_lists: bool,
-) -> Result<Moment> {
+fn read_moment(from: &mut Checkpoint<SavedPoint>, prefix: &str, has_lists: bool) -> Result<Moment> {
     let particles = read_particles(from, prefix)?;
     if !has_lists {
         return Ok((particles, None));

@@ -17,8 +17,8 @@ fn case(max_points: usize) -> String {
         .replace("cell: \"20 um\"", "cell: \"15 um\"")
         .replace("CenteredSquare()", "Square()")
         .replace("length: Cells(8)", "length: Cells(6)")
-        .replace("max_fed_cells: 12", "max_fed_cells: 7")
-        .replace("Cells(4)", "Cells(1)")
+        .replace("max_fed_cells: 12", "max_fed_cells: 11")
+        .replace("Cells(4)", "Cells(5)")
 }
 
 fn run(folder: &Path, max_points: usize, arguments: &[&str]) -> Vec<f64> {

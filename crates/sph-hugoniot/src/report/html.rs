@@ -9,7 +9,7 @@ use sph_riemann::StageTimes;
 use super::belief::{self, Answer};
 use super::curves::Curves;
 use super::planes::{self, Plane};
-use super::{machine, monitors, plots, summary};
+use super::{machine, monitors, plots, profile_plots, summary};
 use crate::check::{Check as CaseCheck, duration};
 use crate::config::Case;
 use crate::film::Frame;
@@ -153,7 +153,10 @@ fn warnings(outcomes: &[&PointOutcome]) -> Vec<String> {
         Status::Failed(reason) => Some(format!("u_p = {} m/s failed: {reason}", o.particle_velocity)),
         _ => None,
     });
-    failed.collect()
+    let doubtful = outcomes.iter().flat_map(|o| {
+        o.warnings.iter().map(|warning| format!("u_p = {} m/s: {warning}", o.particle_velocity))
+    });
+    failed.chain(doubtful).collect()
 }
 
 fn links(outcomes: &[&PointOutcome]) -> Vec<String> {
@@ -221,7 +224,7 @@ fn point_section(case: &Case, outcome: &PointOutcome) -> Section {
     }
     if !outcome.profile.is_empty() {
         section = section.with_picture(
-            plots::profile(outcome),
+            profile_plots::profile(outcome),
             "Averages in the frame of the front. The two densities must meet behind it where pores are shut.",
         );
     }
@@ -231,7 +234,10 @@ fn point_section(case: &Case, outcome: &PointOutcome) -> Section {
             .with_strip(film(outcome));
     }
     if case.output.images && !outcome.fields.x.is_empty() {
-        section = section.with_picture(plots::fields(outcome), "The last moment: density, σ_xx, u_x.");
+        section = section.with_picture(
+            profile_plots::fields(outcome),
+            "The last moment: density, σ_xx, u_x, plastic strain, slip.",
+        );
     }
     if !outcome.monitors.is_empty() {
         let table = Section::new("Monitors").folded().with_table(&monitors::table(outcome));

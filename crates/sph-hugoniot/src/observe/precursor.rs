@@ -21,6 +21,9 @@ use super::states::MeanState;
 
 /// Part of the speed behind it that says that the precursor has come to a place.
 const FOOT: f64 = 0.1;
+/// Distance from the inlet at which it counts as arrived: a slow window is looked at seldom, and the inlet stops the matter
+/// again [cells].
+const NEAR: f64 = 4.0;
 /// Distance of the stretch that is read from the front and from the precursor's middle [cells].
 const MARGIN: f64 = 1.5;
 
@@ -79,9 +82,10 @@ impl PrecursorWatch {
         let velocities: Vec<f64> =
             (0..profile.len()).map(|n| profile.around(n).velocity() + window.inlet_velocity()).collect();
         let look = Look { time: window.time(), fed: window.fed_length(), front, velocities };
-        let last = ((window.regions().inlet_start - 0.5 * cell) / self.spacing) as usize;
         let behind = self.value(&look, front + MARGIN * cell);
-        let arrived = look.velocities.get(last).is_some_and(|&u| u > FOOT * behind);
+        let near = window.regions().inlet_start - (NEAR * cell).min(0.3 * window.regions().length);
+        let nodes = look.velocities.get((near / self.spacing) as usize..).unwrap_or_default();
+        let arrived = nodes.iter().any(|&u| u > FOOT * behind);
         if arrived && behind > 0.0 {
             self.finish(window, cell);
         } else {
@@ -135,6 +139,6 @@ impl PrecursorWatch {
         let (product, square) = late
             .iter()
             .fold((0.0, 0.0), |s, p| (s.0 + (p.0 - mean_t) * (p.1 - mean_x), s.1 + (p.0 - mean_t).powi(2)));
-        (late.len() >= 4 && square > 0.0).then(|| product / square)
+        (late.len() >= 3 && square > 0.0).then(|| product / square)
     }
 }

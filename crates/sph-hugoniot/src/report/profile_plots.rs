@@ -13,14 +13,14 @@ use crate::outcome::PointOutcome;
 /// Longest strip of a field image, in heights of the cell.
 const LONGEST_STRIP: f64 = 16.0;
 /// Single moments that are drawn.
-const MOMENTS: usize = 2;
+const MOMENTS: usize = 1;
 /// Microns in a meter.
 const MICRO: f64 = 1e6;
 /// Pascals in a gigapascal.
 const GIGA: f64 = 1e9;
 
 /// Color of single moments.
-const MOMENT_COLOR: Color = Color::GRAY;
+const MOMENT_COLOR: Color = Color::rgb(180, 180, 180);
 
 /// A quantity of a bin, in the unit of its axis.
 type Quantity = fn(&Bin) -> f64;
@@ -34,7 +34,7 @@ fn with_moments(mut panel: Panel, outcome: &PointOutcome, value: Quantity) -> Pa
     let moments = &outcome.snapshots;
     for (k, bins) in moments.iter().rev().take(MOMENTS).enumerate() {
         let (place, values) = (column(bins, |b| b.place * MICRO), column(bins, value));
-        let label = if k == 0 { "single moments" } else { "" };
+        let label = if k == 0 { "one moment" } else { "" };
         panel = panel.with(Series::dashed(label, &place, &values).with_color(MOMENT_COLOR));
     }
     panel

@@ -99,7 +99,7 @@ impl Study {
         let case = config::Case { search, ..self.case.clone() };
         let settings = setup::window_settings(&case, self.particle_velocity);
         let feed = setup::feed_sample(&self.sample)?;
-        Ok(Window::new(feed, vec![case.material.clone()], case.scheme, settings)?)
+        Ok(Window::new(feed, case.materials(), case.scheme, settings)?)
     }
 
     /// Tracking, and the reference: the mean over the last cells of a long run.
@@ -174,7 +174,7 @@ impl Study {
             if !simulation.step_count().is_multiple_of(10) {
                 continue;
             }
-            let profile = Profile::new(simulation.particles(), |_| 0.0, grid, cell);
+            let profile = Profile::new(simulation.particles(), |_| 0.0, grid, self.sample.height);
             let Some(front) = profile.rightmost_crossing(0.5 * u_p) else { continue };
             history.observe(simulation.time(), front);
             let blocks = history.blocks();
@@ -211,16 +211,16 @@ impl Study {
                 particles.push(particle);
             }
         }
-        let upper = glam::DVec2::new(cells as f64 * self.sample.cell, self.sample.cell);
+        let upper = glam::DVec2::new(cells as f64 * self.sample.cell, self.sample.height);
         let domain = Domain::new(glam::DVec2::ZERO, upper, [false, true]);
-        Ok(Simulation::new(domain, vec![self.case.material.clone()], particles, self.case.scheme)?)
+        Ok(Simulation::new(domain, self.case.materials(), particles, self.case.scheme)?)
     }
 }
 
 /// Runs the comparison and prints its table.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let case = config::parse(CASE, "search_comparison.rs")?;
-    let sample = microstructure::sample(&case.medium, case.material.reference_density);
+    let sample = microstructure::sample(&case);
     let particle_velocity = std::env::args().nth(1).map_or(Ok(case.points[0]), |text| text.parse())?;
     let study = Study { case, sample, particle_velocity };
     let (tracking, reference) = study.tracking()?;

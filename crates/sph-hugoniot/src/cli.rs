@@ -9,12 +9,12 @@ use std::time::Duration;
 use clap::{Parser, Subcommand};
 
 use crate::config::resolve::PARTICLE_VELOCITIES;
-use crate::config::units::Velocity;
+use crate::config::units::{Length, LengthKind, Velocity, show};
 use crate::report::curves::load_data;
 use crate::report::machine;
 use crate::run::{self, Earlier, RunEnd, RunOptions};
 use crate::shell::{self, ColorChoice};
-use crate::{check, config, restart, schema, status, template};
+use crate::{check, config, restart, schema, status, study, template};
 
 /// Everything went well.
 pub const SUCCESS: u8 = 0;
@@ -33,6 +33,8 @@ const EXAMPLES: &str = "Examples:
   hugoniot run case.ron                      all points of the case
   hugoniot run case.ron --up 100,150         two points only
   hugoniot run case.ron --out results/a --threads 2 --quiet
+  hugoniot run case.ron --resolutions 2um,1um,0.5um
+                                             u_s at vanishing particle size
   hugoniot run case.ron --resume             go on after Ctrl-C, a crash or a power cut
   hugoniot status results/porous-copper      how far a run is, from another terminal
   hugoniot completions bash > ~/.local/share/bash-completion/completions/hugoniot
@@ -88,6 +90,9 @@ pub enum Command {
         /// Particle velocities in m/s, in place of those of the case
         #[arg(long, value_name = "U_P", value_delimiter = ',', value_parser = particle_velocity)]
         up: Vec<f64>,
+        /// Particle sizes, in place of that of the case: the sweep with each, and u_s at vanishing size
+        #[arg(long, value_name = "D", value_delimiter = ',', value_parser = particle_size)]
+        resolutions: Vec<f64>,
         /// Folder of the results, in place of that of the case
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
@@ -161,6 +166,12 @@ fn particle_velocity(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Reads a particle size: `1um`, `500 nm`.
+fn particle_size(text: &str) -> Result<f64, String> {
+    let size = Length::parse(text)?.si;
+    if size > 0.0 { Ok(size) } else { Err(format!("{text} is no particle size; hint: such as 1um")) }
+}
+
 /// Reads a time in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("{text:?} is no number of seconds"))?;
@@ -178,7 +189,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
     match arguments.command {
         Command::Init { template } => Ok(init(template.as_deref())),
         Command::Check { case, json, threads, picture } => check_case(&case, json, threads, picture, color),
-        Command::Run { case, up, out, threads, resume, replace, keep_every, quiet, json } => {
+        Command::Run { case, up, resolutions, out, threads, resume, replace, keep_every, quiet, json } => {
             let earlier = match (resume, replace) {
                 (true, _) => Earlier::Resume,
                 (_, true) => Earlier::Replace,
@@ -189,7 +200,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
             let folder = out.unwrap_or_default();
             let go_on = String::new();
             let options = RunOptions { folder, threads, quiet, json, earlier, keep_every, go_on };
-            run_case(&case, up, options, color)
+            run_case(&case, Changes { up, resolutions }, options, color)
         }
         Command::Status { folder, json } => show_status(&folder, json),
         Command::Completions { shell } => {
@@ -274,31 +285,99 @@ fn check_case(
     Ok(SUCCESS)
 }
 
-fn run_case(path: &Path, mut points: Vec<f64>, mut options: RunOptions, color: bool) -> anyhow::Result<u8> {
-    let Some(mut case) = load(path, color) else { return Ok(BAD_INPUT) };
-    if !points.is_empty() {
-        points.sort_by(f64::total_cmp);
-        points.dedup();
+/// What of a case is replaced on the command line.
+#[derive(Debug, Default)]
+struct Changes {
+    /// Points [m/s].
+    up: Vec<f64>,
+    /// Particle sizes of a study [m].
+    resolutions: Vec<f64>,
+}
+
+impl Changes {
+    fn sorted(mut self) -> Self {
+        self.up.sort_by(f64::total_cmp);
+        self.up.dedup();
+        // The coarsest run comes first: it is done soon, and shows soon what is wrong.
+        self.resolutions.sort_by(|a, b| b.total_cmp(a));
+        self.resolutions.dedup();
+        self
+    }
+
+    fn apply(&self, case: &mut config::Case) {
+        if !self.up.is_empty() {
+            (case.points, case.refinement) = (self.up.clone(), None);
+        }
+    }
+
+    /// Tells which points no front can have in this case; true if there is one.
+    fn are_refused(&self, case: &config::Case) -> bool {
         let (material, porosity) = (&case.material, case.medium.porosity);
-        let refusals = points.iter().filter_map(|&u| crate::separation::refusal(material, porosity, u));
+        let refusals = self.up.iter().filter_map(|&u| crate::separation::refusal(material, porosity, u));
         let refusals: Vec<String> =
             refusals.map(|(text, hint)| format!("error: {text}; hint: {hint}")).collect();
         if !refusals.is_empty() {
             eprintln!("{}", refusals.join("\n"));
-            return Ok(BAD_INPUT);
         }
-        (case.points, case.refinement) = (points, None);
+        !refusals.is_empty()
     }
+
+    /// The options that make these changes again.
+    fn words(&self) -> String {
+        let list = |name: &str, items: Vec<String>| {
+            if items.is_empty() { String::new() } else { format!(" {name} {}", items.join(",")) }
+        };
+        let sizes = self.resolutions.iter().map(|&d| show::<LengthKind>(d).replace(' ', "")).collect();
+        list("--up", self.up.iter().map(f64::to_string).collect()) + &list("--resolutions", sizes)
+    }
+}
+
+/// The case at each particle size of a study; `None` if one cannot be, which is told.
+fn study_cases(path: &Path, changes: &Changes, color: bool) -> Option<Vec<config::Case>> {
+    let mut cases = Vec::new();
+    for &size in &changes.resolutions {
+        let case = config::load_with(path, Some(size));
+        let told = |error: config::CaseError| {
+            let size = show::<LengthKind>(size);
+            eprintln!("with --resolutions {size}:\n{}", error.render(color).trim_end());
+        };
+        let mut case = case.map_err(told).ok()?;
+        changes.apply(&mut case);
+        if case.refinement.is_some() {
+            eprintln!(
+                "error: {}: an adaptive sweep chooses other points at each particle size; hint: --up names the points",
+                path.display()
+            );
+            return None;
+        }
+        cases.push(case);
+    }
+    Some(cases)
+}
+
+fn run_case(path: &Path, changes: Changes, mut options: RunOptions, color: bool) -> anyhow::Result<u8> {
+    let changes = changes.sorted();
+    let Some(mut case) = load(path, color) else { return Ok(BAD_INPUT) };
+    if changes.are_refused(&case) {
+        return Ok(BAD_INPUT);
+    }
+    changes.apply(&mut case);
+    let Some(cases) = study_cases(path, &changes, color) else { return Ok(BAD_INPUT) };
     let text = std::fs::read_to_string(path)?;
     if options.folder.as_os_str().is_empty() {
         options.folder = PathBuf::from(&case.output.directory);
     }
     let interrupt = stop_on_interrupt()?;
     let word = |path: &Path| machine::quoted(path.to_string_lossy().into_owned());
-    let go_on = format!("hugoniot run {} --out {} --resume", word(path), word(&options.folder));
+    let go_on =
+        format!("hugoniot run {}{} --out {} --resume", word(path), changes.words(), word(&options.folder));
     options.go_on.clone_from(&go_on);
     // What was kept before stands, also where a file could not be written: the way on is the same.
-    let end = run::run(&case, &text, &options, &interrupt).map_err(|error| {
+    let end = match cases.is_empty() {
+        true => run::run(&case, &text, &options, &interrupt),
+        false => study::run(&cases, &text, &options, &interrupt),
+    }
+    .map_err(|error| {
         error.context(format!("the run has stopped (once this is mended, go on with: {go_on})"))
     })?;
     if end == RunEnd::Interrupted {

@@ -36,5 +36,6 @@ pub mod setup;
 pub mod shell;
 pub mod statistics;
 pub mod status;
+pub mod study;
 pub mod sweep;
 pub mod template;

@@ -32,6 +32,11 @@ const MAX_FILE: u64 = 1 << 20;
 
 /// Reads a case file.
 pub fn load(path: &Path) -> Result<Case, CaseError> {
+    load_with(path, None)
+}
+
+/// Reads a case file with another particle size [m] than it has; all that must hold is checked with that one.
+pub fn load_with(path: &Path, particle_size: Option<f64>) -> Result<Case, CaseError> {
     let shown = path.display().to_string();
     let refuse = |message: String| CaseError {
         path: shown.clone(),
@@ -49,7 +54,7 @@ pub fn load(path: &Path) -> Result<Case, CaseError> {
     let bytes = std::fs::read(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
     let text =
         String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}")))?;
-    let mut case = parse(&text, &shown)?;
+    let mut case = parse_with(&text, &shown, particle_size)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     for source in &mut case.data {
         if let case::DataSource::Csv { file, .. } = source {
@@ -61,10 +66,18 @@ pub fn load(path: &Path) -> Result<Case, CaseError> {
 
 /// Reads a case from text; `path` stands in the messages, and files that the case names are looked for beside it.
 pub fn parse(text: &str, path: &str) -> Result<Case, CaseError> {
+    parse_with(text, path, None)
+}
+
+fn parse_with(text: &str, path: &str, particle_size: Option<f64>) -> Result<Case, CaseError> {
     let faults = fault::Faults::default();
     let root = syntax::parse(text, &faults);
     let case = root.as_ref().and_then(|tree| {
-        let schema: schema::CaseSchema = tree::read(tree, &faults)?;
+        let mut schema: schema::CaseSchema = tree::read(tree, &faults)?;
+        if let (Some(size), field::Field::Good(medium, span)) = (particle_size, &mut schema.medium) {
+            let place = medium.particle_size.span().unwrap_or_else(|| span.clone());
+            medium.particle_size = field::Field::Good(units::Length::from_si(size), place);
+        }
         resolve::resolve(&schema, &tree.span, Path::new(path).parent().unwrap_or(Path::new("")), &faults)
     });
     match case {

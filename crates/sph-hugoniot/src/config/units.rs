@@ -77,6 +77,11 @@ pub type Viscosity = Quantity<ViscosityKind>;
 pub type Time = Quantity<TimeKind>;
 
 impl<K: Kind> Quantity<K> {
+    /// A quantity of this value in SI.
+    pub fn from_si(si: f64) -> Self {
+        Self { si, kind: PhantomData }
+    }
+
     /// Reads number and unit.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();

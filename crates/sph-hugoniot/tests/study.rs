@@ -1,0 +1,54 @@
+//! A resolution study from the command line: one run a particle size, a table, a picture; it goes on where it was.
+
+use std::path::Path;
+use std::process::Command;
+
+use sph_io::table::Table;
+
+fn study(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    std::fs::write(folder.join("case.ron"), sph_hugoniot::template::text("smoke").unwrap()).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_hugoniot"))
+        .current_dir(folder)
+        .args(["run", "case.ron", "--out", "out", "--quiet"])
+        .args(arguments)
+        .output()
+        .unwrap();
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn a_study_runs_each_particle_size_and_extrapolates() {
+    let folder = tempfile::tempdir().unwrap();
+    let sizes = ["--up", "300", "--resolutions", "2.5um,5um"];
+    assert_eq!(study(folder.path(), &sizes), (Some(0), String::new()));
+    let out = folder.path().join("out");
+    let outcome = |size: &str| {
+        out.join(size).join("points/up_0300/outcome.ckpt").metadata().unwrap().modified().unwrap()
+    };
+    let first = (outcome("D_5um"), outcome("D_2.5um"));
+    let table = Table::read_csv(out.join("resolution.csv")).unwrap();
+    let value = |name: &str| table.floats(name).unwrap()[0];
+    let (coarse, fine) = (value("u_s_5um"), value("u_s_2.5um"));
+    // Between Richardson's formula of first and of second order.
+    let expected = 0.5 * ((2.0 * fine - coarse) + (4.0 * fine - coarse) / 3.0);
+    assert!((value("u_s_limit") / expected - 1.0).abs() < 1e-9, "{coarse} {fine}");
+    assert!(value("uncertainty") >= value("order_spread"));
+    assert!(out.join("plots/resolution.png").metadata().unwrap().len() > 1000);
+
+    // Nothing is lost by accident, and a study that goes on computes nothing again.
+    let (code, said) = study(folder.path(), &sizes);
+    assert!(code == Some(2) && said.contains("--resume"), "{said}");
+    let more = [&sizes[..], &["--resume"]].concat();
+    assert_eq!(study(folder.path(), &more), (Some(0), String::new()));
+    assert_eq!(first, (outcome("D_5um"), outcome("D_2.5um")));
+}
+
+#[test]
+fn a_particle_size_that_does_not_fit_is_told_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, said) = study(folder.path(), &["--resolutions", "2um,3um"]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("with --resolutions 3 um") && said.contains("does not divide"), "{said}");
+    assert!(!folder.path().join("out").exists());
+    assert_eq!(study(folder.path(), &["--resolutions", "1GPa"]).0, Some(2));
+}

@@ -1,6 +1,6 @@
 //! `cargo xtask validate`: builds `sph-validate` in release and runs it with the same options.
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use crate::process;
 
@@ -19,5 +19,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     // The folder of the caller stays, so that --out means what it says there.
     command.args(["run", "--quiet", "--release", "--package", "sph-validate", "--bin", "sph-validate"]);
     command.arg("--manifest-path").arg(process::root().join("Cargo.toml"));
+    if let Some(commit) = commit() {
+        command.env("SPH_VALIDATE_COMMIT", commit);
+    }
     process::run(command.arg("--").args(&arguments.options))
+}
+
+/// The state of the repository for the report, where git knows it.
+fn commit() -> Option<String> {
+    let mut git = Command::new("git");
+    git.arg("-C").arg(process::root()).args(["describe", "--always", "--dirty"]);
+    let output = git.output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

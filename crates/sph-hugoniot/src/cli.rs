@@ -11,7 +11,6 @@ use clap::{Parser, Subcommand};
 use crate::config::resolve::PARTICLE_VELOCITIES;
 use crate::config::units::{Length, LengthKind, Velocity, show};
 use crate::report::curves::load_data;
-use crate::report::machine;
 use crate::run::{self, Earlier, RunEnd, RunOptions};
 use crate::shell::{self, ColorChoice};
 use crate::{check, config, restart, schema, status, study, template};
@@ -368,7 +367,7 @@ fn run_case(path: &Path, changes: Changes, mut options: RunOptions, color: bool)
         options.folder = PathBuf::from(&case.output.directory);
     }
     let interrupt = stop_on_interrupt()?;
-    let word = |path: &Path| machine::quoted(path.to_string_lossy().into_owned());
+    let word = |path: &Path| sph_io::machine::quoted(path.to_string_lossy().into_owned());
     let go_on =
         format!("hugoniot run {}{} --out {} --resume", word(path), changes.words(), word(&options.folder));
     options.go_on.clone_from(&go_on);

@@ -20,7 +20,7 @@ use crate::point::Control;
 use crate::refine;
 use crate::report::curves::{Curves, load_data};
 use crate::report::html::RunFacts;
-use crate::report::{Report, earlier, machine, monitors, summary};
+use crate::report::{Report, earlier, monitors, summary};
 use crate::restart::Keeper;
 use crate::status::{StatusBoard, Way};
 use crate::sweep::{self, Sweep, Watch};
@@ -106,7 +106,7 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     let curves = Curves::new(case, &sample, &finished, &data);
     report.write_curves(&curves)?;
     let facts = RunFacts {
-        command: machine::command(),
+        command: sph_io::machine::command(),
         started: clock::unix_seconds(began),
         seconds: started.elapsed().as_secs_f64(),
         threads: options.threads,

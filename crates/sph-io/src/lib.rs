@@ -12,6 +12,7 @@ mod error;
 pub mod field_image;
 pub mod html;
 pub mod lock;
+pub mod machine;
 pub mod plot;
 pub mod progress;
 pub mod snapshot;

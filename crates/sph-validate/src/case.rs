@@ -3,11 +3,14 @@
 use std::fmt;
 
 use clap::ValueEnum;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sph_riemann::{Scheme, Settings};
 
 /// A scheme of the solver, by its name in commands and files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all(serialize = "kebab-case"))]
 pub enum SchemeName {
     /// No reconstruction, no kernel correction: the baseline.
@@ -79,7 +82,7 @@ impl SchemeName {
 }
 
 /// How much is run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tier {
     /// Coarse resolutions: under three minutes on two cores, all suites together.
@@ -100,7 +103,7 @@ impl Tier {
 }
 
 /// One run: a variant of a suite's problem with one scheme at one resolution.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub struct Case {
     /// Name of the suite.
     pub suite: String,

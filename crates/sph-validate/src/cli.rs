@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::SystemTime;
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
@@ -12,7 +13,9 @@ use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
 use crate::gate::Significant;
 use crate::outcome::Outcome;
+use crate::page::page;
 use crate::plots::write_pictures;
+use crate::provenance::provenance;
 use crate::report::Report;
 use crate::runner::{Ended, Settings, Status, plan, run_all};
 use crate::store::{Earlier, Store};
@@ -90,6 +93,7 @@ pub fn execute(arguments: &Arguments) -> Result<u8, ValidateError> {
 }
 
 fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, ValidateError> {
+    let begun = SystemTime::now();
     let store = Store::open(&arguments.out, arguments.earlier())?;
     let schemes = if arguments.scheme.is_empty() { &SchemeName::ALL[..] } else { &arguments.scheme };
     let jobs = plan(suites, schemes, arguments.tier);
@@ -98,6 +102,8 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let label = format!("validation, {} tier, {threads} threads", arguments.tier.as_str());
     let progress = Mutex::new(Progress::new(1.0, label, Mode::Auto));
     let interrupt = stop_on_interrupt();
+    let taken_over =
+        jobs.iter().filter(|job| store.load(&job.case, &job.suite.parameters()).is_some()).count();
     let settings = Settings { threads, store: Some(&store), interrupt: &interrupt };
     let ended = run_all(jobs, settings, &|status, ended| {
         show(&mut progress.lock().unwrap_or_else(PoisonError::into_inner), status, ended);
@@ -113,7 +119,8 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
         );
         return Ok(INTERRUPTED);
     }
-    let report = Report::new(arguments.command(), arguments.tier, &ended)?;
+    let provenance = provenance(arguments.command(), begun, taken_over);
+    let report = Report::new(provenance, arguments.tier, &ended)?;
     write_files(&report, &ended, &arguments.out)?;
     print_tables(&report);
     let failed = ended.iter().filter_map(|ended| ended.result.as_ref().err());
@@ -137,11 +144,14 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
 }
 
 fn write_files(report: &Report, ended: &[Ended<'_>], folder: &Path) -> Result<(), ValidateError> {
-    report.write_json(&folder.join("results.json"))?;
+    report.write_json(folder)?;
     let pictures = write_pictures(ended, folder)?;
+    let fault = |path: PathBuf, reason: String| ValidateError::Output { path, reason };
     let path = folder.join("summary.md");
     sph_io::write_atomic(&path, summary(report, &pictures).as_bytes())
-        .map_err(|error| ValidateError::Output { path, reason: error.to_string() })
+        .map_err(|error| fault(path, error.to_string()))?;
+    let path = folder.join("report.html");
+    page(report, ended)?.write(&path).map_err(|error| fault(path, error.to_string()))
 }
 
 fn print_tables(report: &Report) {

@@ -9,12 +9,13 @@
 //! has no such guarantee: forces are not along the line between two particles. It applies to bodies in an open domain
 //! without constraints.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::metric::{Measurement, Metric};
 
 /// Relative drifts [-] of what must be conserved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Conservation {
     /// Of the mass.
     pub mass: f64,

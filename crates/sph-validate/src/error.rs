@@ -32,7 +32,7 @@ pub enum ValidateError {
         /// Time reached [s].
         time: f64,
         /// What the solver says.
-        source: sph_riemann::StepError,
+        source: Box<sph_riemann::StepError>,
     },
     /// The moving window cannot be made, or stopped.
     #[error("{case}: moving window: {source}")]
@@ -40,7 +40,7 @@ pub enum ValidateError {
         /// Which run.
         case: String,
         /// What the window says.
-        source: sph_window::WindowError,
+        source: Box<sph_window::WindowError>,
     },
     /// What a run waits for did not come in the time or travel allowed.
     #[error("{case}: {reason}")]

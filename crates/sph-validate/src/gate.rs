@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, SchemeName};
@@ -16,7 +17,7 @@ use crate::error::ValidateError;
 const REACHED_MARGIN: f64 = 0.05;
 
 /// What a row must fulfil.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gate {
     /// |value - reference| must not be greater.

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A figure of a run: its name in `results.json` and in the files of gates, its unit, and what kind of figure it is.
@@ -18,7 +19,7 @@ pub struct Metric {
 }
 
 /// What kind of figure a metric is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// Norm of an error: the reference is zero, an order of convergence is reported.

@@ -2,6 +2,7 @@
 //!
 //! An outcome is kept on disk as it is, so that a finished run is never computed again.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
@@ -80,7 +81,7 @@ pub struct Field {
 }
 
 /// What a run cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Cost {
     /// Particles at the end, those outside of the domain included.
     pub particles: usize,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use sph_io::table::{Column, Table};
 
@@ -15,7 +16,7 @@ use crate::runner::{Ended, suites_of};
 use crate::suites::{About, ReferenceKind};
 
 /// One figure with everything that judges it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Row {
     /// The problem.
     pub suite: String,
@@ -29,7 +30,8 @@ pub struct Row {
     pub metric: String,
     /// What kind of figure.
     pub kind: Kind,
-    /// Its value.
+    /// Its value; null if it is not a number.
+    #[schemars(with = "Option<f64>")]
     pub value: f64,
     /// Its unit.
     pub unit: String,
@@ -46,7 +48,7 @@ pub struct Row {
 }
 
 /// What one run conserved and cost, or why it failed.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RunRecord {
     /// Which run.
     #[serde(flatten)]
@@ -62,7 +64,7 @@ pub struct RunRecord {
 }
 
 /// What is said of a suite.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SuiteRecord {
     /// Name in commands and files.
     pub name: String,
@@ -76,11 +78,36 @@ pub struct SuiteRecord {
     pub source: String,
 }
 
-/// All that a validation found: `results.json`.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
+/// By what, on what and how a validation was made.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+pub struct Provenance {
     /// Command line that makes it again.
     pub command: String,
+    /// Version of the program.
+    pub version: String,
+    /// State of the repository, where it is known.
+    pub commit: Option<String>,
+    /// Number for everything that a figure of a run can depend on.
+    pub code: String,
+    /// Version of the compiler.
+    pub compiler: String,
+    /// Processor, cores, instructions, system.
+    pub machine: String,
+    /// When it was begun, UTC.
+    pub begun: String,
+    /// How long it took [s].
+    pub seconds: f64,
+    /// Finished runs that were taken over from an earlier validation.
+    pub taken_over: usize,
+}
+
+/// All that a validation found: `results.json`.
+///
+/// Shares and times are in SI units; figures are in the unit beside them.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Report {
+    /// By what, on what and how it was made.
+    pub provenance: Provenance,
     /// How much was run.
     pub tier: Tier,
     /// The problems.
@@ -93,7 +120,7 @@ pub struct Report {
 
 impl Report {
     /// Judges what has ended; failed runs are kept as records.
-    pub fn new(command: String, tier: Tier, ended: &[Ended<'_>]) -> Result<Self, ValidateError> {
+    pub fn new(provenance: Provenance, tier: Tier, ended: &[Ended<'_>]) -> Result<Self, ValidateError> {
         let (mut suites, mut rows) = (Vec::new(), Vec::new());
         for about in suites_of(ended).into_iter().map(|suite| suite.about()) {
             let gates = GateFile::read(about.name, about.gates)?;
@@ -108,7 +135,7 @@ impl Report {
                 source: gates.source,
             });
         }
-        Ok(Self { command, tier, suites, rows, runs: ended.iter().map(record).collect() })
+        Ok(Self { provenance, tier, suites, rows, runs: ended.iter().map(record).collect() })
     }
 
     /// Rows that missed their gate.
@@ -121,12 +148,10 @@ impl Report {
         self.rows.iter().filter(|row| row.passed.is_some()).count()
     }
 
-    /// Writes `results.json`.
-    pub fn write_json(&self, path: &Path) -> Result<(), ValidateError> {
-        let fault = |reason: String| ValidateError::Output { path: path.to_owned(), reason };
-        let mut text = serde_json::to_string_pretty(self).map_err(|error| fault(error.to_string()))?;
-        text.push('\n');
-        sph_io::write_atomic(path, text.as_bytes()).map_err(|error| fault(error.to_string()))
+    /// Writes `results.json`, and `results.schema.json` that says what it is made of.
+    pub fn write_json(&self, folder: &Path) -> Result<(), ValidateError> {
+        write_json(&folder.join("results.json"), self)?;
+        write_json(&folder.join("results.schema.json"), &schema())
     }
 
     /// The table of one suite for the terminal.
@@ -154,6 +179,19 @@ impl Report {
             .with(column("passed", &|row| passed_word(row.passed).to_owned()))
             .to_text()
     }
+}
+
+/// JSON Schema of `results.json`.
+pub fn schema() -> schemars::Schema {
+    let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<Report>()
+}
+
+fn write_json(path: &Path, content: &impl Serialize) -> Result<(), ValidateError> {
+    let fault = |reason: String| ValidateError::Output { path: path.to_owned(), reason };
+    let mut text = serde_json::to_string_pretty(content).map_err(|error| fault(error.to_string()))?;
+    text.push('\n');
+    sph_io::write_atomic(path, text.as_bytes()).map_err(|error| fault(error.to_string()))
 }
 
 /// A gate's verdict as a word.

@@ -58,7 +58,7 @@ fn ended(n: u32, measurement: Measurement) -> Ended<'static> {
 fn report(errors: [f64; 3]) -> Report {
     let of = |(n, error)| ended(n, Measurement::error_of(VELOCITY_L1, error));
     let ended: Vec<Ended<'_>> = [100, 200, 400].into_iter().zip(errors).map(of).collect();
-    Report::new("test".into(), Tier::Quick, &ended).expect("good gates")
+    Report::new(Provenance::default(), Tier::Quick, &ended).expect("good gates")
 }
 
 #[test]
@@ -96,7 +96,8 @@ fn finest_run_is_the_reference_where_no_answer_is_known() {
 #[test]
 fn gate_of_a_figure_that_no_run_measures_is_an_error() {
     let runs = [ended(10, Measurement::error_of(PERIOD, 1.0))];
-    let error = Report::new("test".into(), Tier::Quick, &runs).expect_err("no velocity_l1").to_string();
+    let error =
+        Report::new(Provenance::default(), Tier::Quick, &runs).expect_err("no velocity_l1").to_string();
     assert!(
         error.contains("`velocity_l1` is no figure of paper tkc-hancock n = 10; it has period, "),
         "{error}"
@@ -119,4 +120,22 @@ fn json_has_the_agreed_fields() {
     assert!(row["order"].as_f64().is_some_and(|order| (order - 3.022).abs() < 0.01));
     assert_eq!(row["reference"], 0.0);
     assert_eq!(json["runs"][0]["conservation"]["energy"], 1e-15);
+}
+
+/// Every field of the JSON is in its schema, with a type that fits.
+#[test]
+fn schema_describes_the_json() {
+    let schema = serde_json::to_value(schema()).expect("JSON");
+    let report = serde_json::to_value(report([f64::NAN, 0.0008, 0.0001])).expect("JSON");
+    assert_eq!(report["rows"][0]["value"], serde_json::Value::Null);
+    for (part, value) in [
+        ("Row", &report["rows"][0]),
+        ("RunRecord", &report["runs"][0]),
+        ("Provenance", &report["provenance"]),
+    ] {
+        let described = schema["$defs"][part]["properties"].as_object().expect(part);
+        let found = value.as_object().expect(part);
+        assert_eq!(found.keys().collect::<Vec<_>>(), described.keys().collect::<Vec<_>>(), "{part}");
+    }
+    assert_eq!(schema["$defs"]["Row"]["properties"]["value"]["type"], serde_json::json!(["number", "null"]));
 }

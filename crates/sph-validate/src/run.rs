@@ -51,7 +51,7 @@ impl<'w, D: SolidDimension> Run<'w, D> {
         let report = self.simulation.step_at_most(end - time).map_err(|source| ValidateError::Numerical {
             case: self.case.to_string(),
             time,
-            source,
+            source: Box::new(source),
         })?;
         self.put_in.0 += report.constraint_impulse;
         self.put_in.1 += report.constraint_work;

@@ -11,7 +11,7 @@ use crate::report::{Report, Row, SuiteRecord};
 pub fn summary(report: &Report, pictures: &[Written]) -> String {
     let mut text = String::from("# Validation\n\n");
     let n_failed = report.failures().count();
-    let _ = writeln!(text, "Made by `{}` ({} tier).", report.command, report.tier.as_str());
+    let _ = writeln!(text, "Made by `{}` ({} tier).", report.provenance.command, report.tier.as_str());
     let _ = writeln!(text, "{} of {} gates passed.\n", report.n_gates() - n_failed, report.n_gates());
     text.push_str(concat!(
         "A figure in bold missed its gate: it must not be farther from the reference than the published figure of ",

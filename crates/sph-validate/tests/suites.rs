@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use sph_validate::case::{Case, SchemeName, Tier};
 use sph_validate::conservation::Conservation;
 use sph_validate::gate::GateFile;
-use sph_validate::report::Report;
+use sph_validate::report::{Provenance, Report};
 use sph_validate::runner::{Ended, Job, Settings, run_all};
 use sph_validate::suites;
 
@@ -21,7 +21,7 @@ fn gates_pass(cases: &[Case]) -> Report {
     for ended in &ended {
         assert!(ended.result.is_ok(), "{}", ended.result.as_ref().expect_err("a failure"));
     }
-    let report = Report::new("test".into(), Tier::Quick, &ended).expect("readable gates");
+    let report = Report::new(Provenance::default(), Tier::Quick, &ended).expect("readable gates");
     println!("{}", report.table(&report.suites[0]));
     assert!(report.n_gates() > 0, "nothing was judged");
     let missed: Vec<_> = report.failures().collect();

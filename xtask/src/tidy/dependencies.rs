@@ -7,14 +7,15 @@ use crate::files::Text;
 
 /// Each package of the workspace with the packages of the workspace that it may depend on, from the ground up. The
 /// same holds for what its tests and examples use.
-const MAY_USE: [(&str, &[&str]); 8] = [
+const MAY_USE: [(&str, &[&str]); 9] = [
+    ("sph-case", &[]),
     ("sph-core", &[]),
     ("sph-materials", &[]),
     ("sph-io", &[]),
     ("sph-riemann", &["sph-core", "sph-materials"]),
     ("sph-window", &["sph-core", "sph-materials", "sph-riemann"]),
-    ("sph-hugoniot", &["sph-core", "sph-materials", "sph-riemann", "sph-window", "sph-io"]),
-    ("sph-validate", &["sph-core", "sph-materials", "sph-riemann", "sph-window", "sph-io"]),
+    ("sph-hugoniot", &["sph-core", "sph-materials", "sph-riemann", "sph-window", "sph-io", "sph-case"]),
+    ("sph-validate", &["sph-core", "sph-materials", "sph-riemann", "sph-window", "sph-io", "sph-case"]),
     // It starts programs; it links no numerics.
     ("xtask", &[]),
 ];

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use sph_case::units::significant;
+use sph_case::{Checker, Faults, Field, Span};
+
 use super::case::*;
-use super::fault::{Fault, Faults, Span};
-use super::field::Field;
 use super::resolve_medium::Surroundings;
 use super::schema::*;
-use super::units::{Count, Kind, Number, Quantity, show, significant};
 
 /// Most particles that a window may hold: about 100 GB, beyond any machine that this program is made for.
 pub const MAX_PARTICLES: f64 = 1e8;
@@ -19,7 +19,7 @@ pub const PARTICLE_VELOCITIES: (f64, f64) = (1.0, 3000.0);
 ///
 /// Files that the case names are looked for in `folder`.
 pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults) -> Option<Case> {
-    let r = Resolver { faults };
+    let r = Resolver(Checker { faults });
     let name = schema.name.required("name", whole, faults).cloned();
     let materials = r.materials(schema, whole);
     let names: Option<Vec<String>> =
@@ -69,87 +69,18 @@ pub(super) fn span_of<T>(field: &Field<T>) -> Span {
     field.span().unwrap_or(0..0)
 }
 
-/// Checks of single fields and groups.
-pub(super) struct Resolver<'f> {
-    pub(super) faults: &'f Faults,
+/// Checks of the groups; those of single fields are the [`Checker`]'s.
+pub(super) struct Resolver<'f>(pub(super) Checker<'f>);
+
+impl<'f> std::ops::Deref for Resolver<'f> {
+    type Target = Checker<'f>;
+
+    fn deref(&self) -> &Checker<'f> {
+        &self.0
+    }
 }
 
 impl Resolver<'_> {
-    pub(super) fn refuse(&self, span: Span, message: String, hint: &str) {
-        self.faults.push(Fault::new(span, message).hint(hint));
-    }
-
-    /// A group that may be absent: then all its fields have their defaults.
-    fn group<S: Default, T>(&self, field: &Field<S>, read: impl Fn(&S) -> Option<T>) -> Option<T> {
-        match field {
-            Field::Absent => read(&S::default()),
-            Field::Bad(_) => None,
-            Field::Good(group, _) => read(group),
-        }
-    }
-
-    /// A quantity within [low, high], SI.
-    pub(super) fn quantity<K: Kind>(&self, field: &Field<Quantity<K>>, low: f64, high: f64) -> Option<f64> {
-        let Field::Good(value, span) = field else { return None };
-        if (low..=high).contains(&value.si) {
-            return Some(value.si);
-        }
-        let message = format!("{} is out of range", show::<K>(value.si));
-        self.refuse(span.clone(), message, &format!("from {} to {}", show::<K>(low), show::<K>(high)));
-        None
-    }
-
-    /// A required quantity within [low, high], SI.
-    pub(super) fn needed<K: Kind>(
-        &self,
-        field: &Field<Quantity<K>>,
-        name: &str,
-        group: &Span,
-        low: f64,
-        high: f64,
-    ) -> Option<f64> {
-        field.required(name, group, self.faults);
-        self.quantity(field, low, high)
-    }
-
-    /// A plain number within [low, high], or the default.
-    pub(super) fn number(&self, field: &Field<Number>, default: f64, low: f64, high: f64) -> Option<f64> {
-        let Field::Good(Number(value), span) = field else {
-            return matches!(field, Field::Absent).then_some(default);
-        };
-        if (low..=high).contains(value) {
-            return Some(*value);
-        }
-        let hint = format!(
-            "from {} to {}; {} if left out",
-            significant(low),
-            significant(high),
-            significant(default)
-        );
-        self.refuse(span.clone(), format!("{} is out of range", significant(*value)), &hint);
-        None
-    }
-
-    /// A whole number within [low, high], or the default.
-    pub(super) fn count(&self, field: &Field<Count>, default: u64, low: u64, high: u64) -> Option<usize> {
-        let Field::Good(Count(value), span) = field else {
-            return matches!(field, Field::Absent).then_some(default as usize);
-        };
-        if (low..=high).contains(value) {
-            return Some(*value as usize);
-        }
-        self.refuse(span.clone(), format!("{value} is out of range"), &format!("from {low} to {high}"));
-        None
-    }
-
-    pub(super) fn choice<T: Copy>(&self, field: &Field<T>, default: T) -> Option<T> {
-        match field {
-            Field::Absent => Some(default),
-            Field::Bad(_) => None,
-            Field::Good(value, _) => Some(*value),
-        }
-    }
-
     fn stop(&self, s: &StopSchema) -> Option<Stop> {
         let startup_cells = match &s.startup_cells {
             Field::Bad(_) => None,

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use super::case::{DataSource, Refinement};
-use super::fault::Span;
 use super::field::Field;
 use super::resolve::{PARTICLE_VELOCITIES, Resolver, span_of};
 use super::schema::{AdaptiveSchema, DataSchema, PointsSchema, RangeSchema};
 use super::units::{Velocity, VelocityKind, show};
+use sph_case::Span;
 
 /// Most points of a case.
 const MAX_POINTS: usize = 1000;

@@ -106,13 +106,13 @@ impl Canvas {
     /// Draws `draw` within `area` only.
     pub fn clipped(&mut self, area: Rect, draw: impl FnOnce(&mut Self)) {
         self.n_clips += 1;
-        self.scene.add(Primitive::ClipStart {
-            x: area.left,
-            y: area.top,
-            width: area.width(),
-            height: area.height(),
-            id: format!("clip{}", self.n_clips),
-        });
+        let (id, width, height) = (format!("clip{}", self.n_clips), area.width(), area.height());
+        let (x, y) = (area.left, area.top);
+        // The back end of SVG writes only the reference: what it refers to must be put down here.
+        self.scene.defs.push(format!(
+            r#"<clipPath id="{id}"><rect x="{x}" y="{y}" width="{width}" height="{height}"/></clipPath>"#
+        ));
+        self.scene.add(Primitive::ClipStart { x, y, width, height, id });
         draw(self);
         self.scene.add(Primitive::ClipEnd);
     }
@@ -294,6 +294,20 @@ fn push_to_last(lines: &mut [Vec<(f64, f64)>], point: (f64, f64)) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Browsers do not clip by a path that is not there.
+    #[test]
+    fn clip_paths_are_defined_in_svg() {
+        let mut canvas = Canvas::new(100.0, 50.0);
+        let area = Rect { left: 10.0, top: 5.0, right: 90.0, bottom: 45.0 };
+        canvas.clipped(area, |canvas| {
+            canvas.line((0.0, 0.0), (100.0, 50.0), Stroke::solid(Color::rgb(0, 0, 0), 1.0))
+        });
+        let svg = canvas.into_svg();
+        assert!(svg.contains("url(#clip1)"), "{svg}");
+        let definition = r#"<clipPath id="clip1"><rect x="10" y="5" width="80" height="40"/></clipPath>"#;
+        assert!(svg.contains(definition), "{svg}");
+    }
 
     #[test]
     fn dashes_run_on_across_corners() {

@@ -178,7 +178,7 @@ fn data(view: &TableView, column: &Column, row: usize) -> String {
     if let Some(target) = view.link(&column.name, row) {
         text = format!("<a href=\"{}\">{text}</a>", escaped(target));
     }
-    if let Some(verdict) = view.verdict(&column.name, row) {
+    if let Some(verdict) = view.verdict(&column.name, row).filter(|_| !text.is_empty()) {
         text = format!("<span class=\"mark {}\">{text}</span>", class(verdict));
     }
     format!("<td{}>{text}</td>", alignment(column))

@@ -99,7 +99,7 @@ pub struct About {
 }
 
 /// What the figures of a suite are held against.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReferenceKind {
     /// An exact solution, or a formula.

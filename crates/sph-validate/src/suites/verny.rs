@@ -365,10 +365,10 @@ fn stop_radius_plot(outcomes: &[&Outcome]) -> Result<Figure, ValidateError> {
     };
     let near = Axis::new("r'_0 [mm]").with_range(by_square - 0.08, formula + 0.05);
     let mut figure = Figure::stacked(
-        "Verney's cylindrical shell: inner radius at the stop (mean of r²)",
+        "Inner radius at the stop (mean of r²)",
         Axis::log("particle size D_0 [mm]").with_ticks(&[0.5, 1.0, 2.0, 4.0]),
     )
-    .with_panel(panel(Axis::new("r'_0 [mm]")))
+    .with_panel(panel(Axis::new("r'_0 [mm]")).with_legend(LegendPosition::TopLeft))
     .with_panel(panel(near).with_legend(LegendPosition::Hidden));
     figure.panel_height = 360.0;
     Ok(figure)

@@ -9,8 +9,8 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
 
-use super::fault::nearest;
-use super::tree::HINT;
+use crate::fault::nearest;
+use crate::tree::HINT;
 
 /// A kind of quantity with its units.
 pub trait Kind: Copy + fmt::Debug + PartialEq + 'static {

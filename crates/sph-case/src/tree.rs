@@ -2,16 +2,16 @@
 //!
 //! A serde deserializer over [`Node`]. It knows what serde's derived code knows (names of fields and variants) and the
 //! place of every value, so it can name the nearest field for a misspelt one, and it goes on after a fault: a field
-//! of type [`Field`](super::field::Field) that cannot be read becomes `Bad` after its fault was noted, and the others are read.
+//! of type [`Field`](crate::field::Field) that cannot be read becomes `Bad` after its fault was noted, and the others are read.
 
 use std::fmt;
 
 use serde::Deserialize;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 
-use super::fault::{Fault, Faults, Span, backticked, name_hint};
-use super::field::FIELD;
-use super::node::{Entry, Node, Value};
+use crate::fault::{Fault, Faults, Span, backticked, name_hint};
+use crate::field::FIELD;
+use crate::node::{Entry, Node, Value};
 
 /// Why a value was refused. `hint` follows the message after `; hint: ` when it passes through serde.
 #[derive(Debug)]
@@ -205,7 +205,7 @@ impl<'de> Deserializer<'de> for Tree<'_> {
     }
 }
 
-/// Start, end and value of a [`Field`](super::field::Field).
+/// Start, end and value of a [`Field`](crate::field::Field).
 struct FieldParts<'t> {
     tree: Tree<'t>,
     next: usize,
@@ -322,9 +322,9 @@ impl<'de> de::VariantAccess<'de> for Choice<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::field::Field;
-    use super::super::syntax;
     use super::*;
+    use crate::field::Field;
+    use crate::syntax;
 
     #[derive(Debug, Default, Deserialize, PartialEq)]
     #[serde(default, deny_unknown_fields)]
@@ -347,7 +347,7 @@ mod tests {
 
     fn faults_of(text: &str) -> Vec<(String, Option<String>)> {
         let faults = Faults::default();
-        if let Some(node) = syntax::parse(text, &faults) {
+        if let Some(node) = syntax::parse(text, "", &faults) {
             read::<Inner>(&node, &faults);
         }
         faults.into_sorted().into_iter().map(|f| (f.message, f.hint)).collect()
@@ -356,7 +356,7 @@ mod tests {
     #[test]
     fn a_good_text_is_read() {
         let faults = Faults::default();
-        let node = syntax::parse("(count: 3, choice: Round(radius: 2.5))", &faults).unwrap();
+        let node = syntax::parse("(count: 3, choice: Round(radius: 2.5))", "", &faults).unwrap();
         let inner: Inner = read(&node, &faults).unwrap();
         assert!(faults.is_empty());
         assert_eq!(inner.count, Field::Good(3, 8..9));

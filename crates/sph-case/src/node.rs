@@ -1,6 +1,6 @@
 //! The tree of a case file: values with their places in the text.
 
-use super::fault::Span;
+use crate::fault::Span;
 
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,14 +91,14 @@ pub fn path_to(node: &Node, span: &Span) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fault::Faults;
-    use super::super::syntax::parse;
     use super::*;
+    use crate::fault::Faults;
+    use crate::syntax::parse;
 
     #[test]
     fn the_path_of_a_place_is_found() {
         let text = "(medium: (pores: Square(radius: \"4 um\")), points: [1, 2])";
-        let node = parse(text, &Faults::default()).unwrap();
+        let node = parse(text, "", &Faults::default()).unwrap();
         let at = |part: &str| text.find(part).map(|i| i..i + part.len()).unwrap();
         assert_eq!(path_to(&node, &at("\"4 um\"")), "medium.pores.radius");
         assert_eq!(path_to(&node, &at("2")), "points[1]");

@@ -5,21 +5,18 @@
 //! one pass finds all faults. Comments, raw strings and trailing commas are as in RON; maps `{…}` are not used by
 //! case files and are refused.
 
-use super::fault::{Fault, Faults};
-use super::node::{Entry, Node, Value};
+use crate::fault::{Fault, Faults};
+use crate::node::{Entry, Node, Value};
 
 /// Deepest nesting that is read: far beyond any case, far below the stack.
 const MAX_DEPTH: usize = 64;
 
-/// Reads the whole text; `None` when not even the outermost value could be found.
-pub fn parse(text: &str, faults: &Faults) -> Option<Node> {
+/// Reads the whole text; `example` is the hint beside an empty one; `None` when not even the outermost value could be found.
+pub fn parse(text: &str, example: &str, faults: &Faults) -> Option<Node> {
     let mut parser = Parser { text, at: 0, depth: 0, unclosed_told: false, faults };
     parser.skip_attributes();
     if parser.peek().is_none() {
-        faults.push(
-            Fault::new(0..text.len(), "the file is empty")
-                .hint("`hugoniot init porous-copper` writes a case"),
-        );
+        faults.push(Fault::new(0..text.len(), "the file is empty").hint(example));
         return None;
     }
     let node = parser.value();
@@ -387,7 +384,7 @@ mod tests {
 
     fn read(text: &str) -> (Option<Node>, Vec<Fault>) {
         let faults = Faults::default();
-        let node = parse(text, &faults);
+        let node = parse(text, "", &faults);
         (node, faults.into_sorted())
     }
 

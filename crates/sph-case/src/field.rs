@@ -5,10 +5,10 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
 
-use super::fault::{Fault, Faults, Span};
+use crate::fault::{Fault, Faults, Span};
 
 /// Name by which [`Field`] makes itself known to the deserializer.
-pub(super) const FIELD: &str = "$sph_hugoniot::Field";
+pub(super) const FIELD: &str = "$sph_case::Field";
 
 /// A field of the case file: absent, refused (the fault is noted), or read, with its place.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,0 +1,107 @@
+//! Case files: text → tree with places → the caller's schema → whatever the caller makes of it.
+//!
+//! A schema is a set of types with serde's `Deserialize`, all of whose fields are [`Field`]s: absent, refused, or read,
+//! with their places. Quantities ([`units`]) are texts of number and unit. Every fault of a file is noted in one list
+//! ([`fault`]) and reading goes on behind it, so that one run tells the user all of it. What is required, which ranges
+//! hold and what the defaults are is decided behind the schema, with [`Checker`] for the usual cases.
+//!
+//! ```
+//! use sph_case::units::{Length, LengthKind};
+//! use sph_case::{Checker, Field, read};
+//!
+//! #[derive(Debug, Default, serde::Deserialize)]
+//! #[serde(default, deny_unknown_fields)]
+//! struct Schema {
+//!     cell: Field<Length>,
+//! }
+//!
+//! let resolve = |schema: Schema, whole: &std::ops::Range<usize>, faults: &sph_case::Faults| {
+//!     Checker { faults }.needed(&schema.cell, "cell", whole, 1e-9, 1.0)
+//! };
+//! assert_eq!(read("(cell: \"20 um\")", "case.ron", "", resolve).unwrap(), 20e-6);
+//! let error = read("(cell: \"20 GPa\", size: 3)", "case.ron", "", resolve).unwrap_err();
+//! assert_eq!(error.faults.len(), 2);
+//! assert!(error.to_string().contains("`GPa` is a unit of pressure, but this field is a length"));
+//! ```
+//!
+//! The crate knows no physics and no defaults.
+
+pub mod check;
+pub mod fault;
+pub mod field;
+pub mod node;
+pub mod syntax;
+pub mod tree;
+pub mod units;
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+pub use check::Checker;
+pub use fault::{CaseError, Fault, Faults, Span};
+pub use field::Field;
+
+/// Largest case file that is read [bytes].
+const MAX_FILE: u64 = 1 << 20;
+
+/// The text of a case file.
+///
+/// # Errors
+/// A file that cannot be read, is too large, or is no text.
+pub fn text_of(path: &Path) -> Result<String, CaseError> {
+    let shown = path.display().to_string();
+    let refuse = |message: String| CaseError {
+        path: shown.clone(),
+        text: String::new(),
+        faults: vec![Fault::new(0..0, message)],
+    };
+    let metadata =
+        std::fs::metadata(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
+    if metadata.len() > MAX_FILE {
+        return Err(refuse(format!(
+            "the case file has {} bytes; at most {MAX_FILE} are read",
+            metadata.len()
+        )));
+    }
+    let bytes = std::fs::read(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
+    String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}")))
+}
+
+/// Reads a case from text: into its schema `S`, and with `resolve` (schema, place of the whole, list of faults) into
+/// what the caller wants. `path` stands in the messages, `example` is the hint beside an empty file.
+///
+/// # Errors
+/// All faults that were noted.
+pub fn read<S, T>(
+    text: &str,
+    path: &str,
+    example: &str,
+    resolve: impl FnOnce(S, &Span, &Faults) -> Option<T>,
+) -> Result<T, CaseError>
+where
+    S: for<'de> Deserialize<'de>,
+{
+    let faults = Faults::default();
+    let root = syntax::parse(text, example, &faults);
+    let case = root.as_ref().and_then(|tree| {
+        let schema: S = tree::read(tree, &faults)?;
+        resolve(schema, &tree.span, &faults)
+    });
+    match case {
+        Some(case) if faults.is_empty() => Ok(case),
+        _ => {
+            Err(CaseError { path: path.into(), text: text.into(), faults: with_paths(faults, root.as_ref()) })
+        }
+    }
+}
+
+/// Adds to each fault the path of the field that it stands at.
+fn with_paths(faults: Faults, root: Option<&node::Node>) -> Vec<Fault> {
+    let mut list = faults.into_sorted();
+    list.retain(|f| !f.message.is_empty());
+    for fault in &mut list {
+        fault.field = root.map_or(String::new(), |tree| node::path_to(tree, &fault.span));
+    }
+    list
+}

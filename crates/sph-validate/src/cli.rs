@@ -1,5 +1,6 @@
 //! The command line of `sph-validate`: what can be typed, and which exit code follows.
 
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,6 +8,7 @@ use std::time::SystemTime;
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
+use sph_io::machine;
 use sph_io::progress::{Mode, Progress};
 
 use crate::case::{Case, SchemeName, Tier};
@@ -21,9 +23,12 @@ use crate::runner::{Ended, Settings, Status, plan, run_all};
 use crate::store::{Earlier, Store};
 use crate::suites::{self, Suite};
 use crate::summary::summary;
+use crate::user;
 
 /// All gates passed.
 pub const PASSED: u8 = 0;
+/// The case file is wrong: nothing was run.
+pub const BAD_INPUT: u8 = 2;
 /// A gate was missed.
 pub const GATE_MISSED: u8 = 4;
 /// Stopped by Ctrl-C; finished runs are kept.
@@ -33,6 +38,7 @@ const EXAMPLES: &str = "Examples:
   cargo xtask validate                                 quick tier, all suites, all schemes
   cargo xtask validate --tier full --resume            every resolution; goes on where it was interrupted
   cargo xtask validate --suite verny --scheme tkc-hancock --out results/shell
+  cargo xtask validate --case validation/cases/riemann-impact.ron --out results/impact
 
 Each run is kept in DIR/runs as soon as it has ended. After Ctrl-C, a crash or a power cut --resume takes over those that
 this program would give again, to the last bit, and computes the others; runs of other code are computed again.
@@ -51,6 +57,9 @@ pub struct Arguments {
     /// Only this scheme; may be given more than once
     #[arg(long, value_enum)]
     scheme: Vec<SchemeName>,
+    /// A problem of your own, in place of the suites: a case file such as those in validation/cases/
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["suite", "tier"])]
+    case: Option<PathBuf>,
     /// Folder of the report, the plots and the finished runs
     #[arg(long, value_name = "DIR", default_value = "results/validation")]
     out: PathBuf,
@@ -76,7 +85,11 @@ impl Arguments {
 
     /// The command that makes the same report.
     fn command(&self) -> String {
-        let mut words = vec![format!("cargo xtask validate --tier {}", self.tier.as_str())];
+        let what = match &self.case {
+            Some(case) => format!("--case {}", machine::quoted(case.display().to_string())),
+            None => format!("--tier {}", self.tier.as_str()),
+        };
+        let mut words = vec![format!("cargo xtask validate {what}")];
         words.extend(self.suite.iter().map(|suite| format!("--suite {suite}")));
         words.extend(self.scheme.iter().map(|scheme| format!("--scheme {scheme}")));
         words.join(" ")
@@ -85,6 +98,16 @@ impl Arguments {
 
 /// Runs the command; returns the exit code.
 pub fn execute(arguments: &Arguments) -> Result<u8, ValidateError> {
+    if let Some(path) = &arguments.case {
+        return match user::load(path) {
+            Ok(suite) => validate(arguments, &[suite.as_ref()]),
+            Err(error) => {
+                let color = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+                eprintln!("{}", error.render(color).trim_end());
+                Ok(BAD_INPUT)
+            }
+        };
+    }
     let is_asked =
         |name: &str| arguments.suite.is_empty() || arguments.suite.iter().any(|asked| asked == name);
     let suites: Vec<&dyn Suite> =

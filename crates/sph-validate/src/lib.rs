@@ -37,4 +37,5 @@ pub mod runner;
 pub mod store;
 pub mod suites;
 pub mod summary;
+pub mod user;
 pub mod watch;

@@ -40,7 +40,10 @@ fn html(ended: &[Ended<'_>]) -> String {
 fn page_says_what_passed_and_what_was_missed() {
     let good = html(&[ended(|case| Ok(outcome(case, 0.04)))]);
     assert!(good.contains("4 of 4 gates passed in 1 runs"), "the verdict");
-    assert!(good.contains("<svg") && good.contains("Elastic-plastic Riemann problem"), "plots and title");
+    assert!(
+        good.contains("data:image/svg+xml") && good.contains("Elastic-plastic Riemann problem"),
+        "plots and title"
+    );
     let bad = html(&[ended(|case| Ok(outcome(case, 0.9)))]);
     assert!(bad.contains("3 of 4 gates passed") && bad.contains("Gates that were missed"), "the verdict");
 }

@@ -27,7 +27,7 @@ fn piston_is_that_of_exactpack() {
     let waves = piston(&aluminum(), 100.0).expect("two waves");
     let PistonWaves::TwoWave { precursor, plastic } = waves else { panic!("{waves:?}") };
     for (name, ours, theirs) in [
-        ("density at yield", precursor.behind.density, 2802.710_684_215_71),
+        ("density at yield", precursor.behind.density, 2_802.710_684_215_71),
         ("pressure at yield", precursor.behind.pressure, 0.364_661_296_870_489e9),
         ("velocity at yield", precursor.behind.particle_velocity, 29.572_102_231_964_9),
         ("precursor", precursor.wave_speed, 6_520.659_743_698_48),

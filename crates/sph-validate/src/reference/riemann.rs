@@ -137,6 +137,21 @@ impl Solid {
         State { density, deviator, velocity: 0.0, stress }
     }
 
+    /// State of stress σ_xx at rest that uniaxial loading from the undisturbed solid leads to: elastic up to the yield
+    /// limit, at it beyond.
+    pub fn loaded(&self, stress: f64) -> State {
+        let strain = stress / self.elastic_modulus();
+        let elastic = 4.0 / 3.0 * self.shear_modulus * strain;
+        let limit = self.deviator_limit();
+        if elastic.abs() <= limit {
+            let density = self.density * (-strain).exp();
+            return State { density, deviator: elastic, velocity: 0.0, stress };
+        }
+        let deviator = limit.copysign(stress);
+        let density = self.density * ((deviator - stress) / self.bulk_modulus).exp();
+        State { density, deviator, velocity: 0.0, stress }
+    }
+
     /// The undisturbed state at rest.
     pub fn at_rest(&self) -> State {
         State { density: self.density, deviator: 0.0, velocity: 0.0, stress: 0.0 }

@@ -133,7 +133,7 @@ impl Resolver<'_> {
     ) -> bool {
         let (reach, half) = (problem.reach(), 0.5 * setup.length);
         let span = time.span().unwrap_or_default();
-        if reach == 0.0 {
+        if setup.left == setup.right {
             let hint = "give the sides different stresses or velocities";
             self.checker.refuse(span, "both sides are in the same state: there is no wave".into(), hint);
             return false;

@@ -80,6 +80,27 @@ fn shell_with_every_scheme() {
     gates_pass(&Case::grid("verny", &SchemeName::ALL, &[5]));
 }
 
+/// One cheap run of the default scheme in each of the further problems.
+#[test]
+fn further_problems_with_the_default_scheme() {
+    let hancock = |suite, variant, n| Case::new(suite, SchemeName::TkcHancock, n).of_variant(variant);
+    for case in [
+        hancock("piston", "copper", 100),
+        hancock("plate-impact", "", 60),
+        hancock("window-solid", "200", 120),
+        hancock("window-porous", "250", 10),
+        hancock("spinning-disc", "", 6),
+        hancock("rigid-rotation", "", 1000),
+        hancock("vibration", "ring", 5),
+        hancock("shells", "aluminum-square", 5),
+        hancock("taylor-bar", "copper", 2),
+        hancock("gas", "sod", 100),
+        hancock("acoustic", "45-deg", 24),
+    ] {
+        gates_pass(&[case]);
+    }
+}
+
 /// A run gives the same bits alone and beside another one.
 #[test]
 fn figures_do_not_depend_on_what_runs_beside() {

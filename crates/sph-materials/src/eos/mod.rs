@@ -19,11 +19,13 @@
 //! One file with the four functions and the documentation that the others have, one variant, one arm in each
 //! `match` below, one row in the property tests (`tests/prop_eos.rs`).
 
+mod ideal_gas;
 mod linear;
 mod linear_gamma;
 mod logarithmic;
 mod mie_gruneisen;
 
+pub use ideal_gas::IdealGas;
 pub use linear::Linear;
 pub use linear_gamma::LinearGamma;
 pub use logarithmic::Logarithmic;
@@ -46,6 +48,8 @@ pub enum EquationOfState {
     Linear(Linear),
     /// Linear in density with an ideal-gas-like thermal part.
     LinearGamma(LinearGamma),
+    /// Ideal gas with constant specific heats.
+    IdealGas(IdealGas),
 }
 
 /// Calls the same function of whichever model is there.
@@ -56,6 +60,7 @@ macro_rules! each_model {
             EquationOfState::Logarithmic($model) => $call,
             EquationOfState::Linear($model) => $call,
             EquationOfState::LinearGamma($model) => $call,
+            EquationOfState::IdealGas($model) => $call,
         }
     };
 }
@@ -98,7 +103,9 @@ impl EquationOfState {
     pub fn density_limit(&self, rho0: f64) -> f64 {
         match self {
             Self::MieGruneisen(model) => model.density_limit(rho0),
-            Self::Logarithmic(_) | Self::Linear(_) | Self::LinearGamma(_) => f64::INFINITY,
+            Self::Logarithmic(_) | Self::Linear(_) | Self::LinearGamma(_) | Self::IdealGas(_) => {
+                f64::INFINITY
+            }
         }
     }
 

@@ -7,6 +7,7 @@
 //! | Mie-Grüneisen | \\( c_a + s_a u_p \\), by construction |
 //! | linear | \\( \tfrac12 u_p + \sqrt{\tfrac14 u_p^2 + c_0^2} \\), from \\( u_s^2 = c_0^2 r \\) |
 //! | linear-Γ | \\( w + \sqrt{w^2 + c_0^2} \\), \\( w = \tfrac14 (\Gamma + 1) u_p \\), from \\( u_s^2 = c_0^2 r/(1 - \tfrac12(\Gamma - 1)(r - 1)) \\) |
+//! | ideal gas | \\( \tfrac12 (\gamma + 1) u_p \\): the strong shock, since it starts from rest at e = 0 |
 //! | logarithmic | \\( r u_p/(r - 1) \\) with \\( u_p^2 = (B/\rho_0) \ln r\, (1 - 1/r) \\), one root |
 
 use super::check_piston;
@@ -44,6 +45,7 @@ fn shock_velocity(eos: &EquationOfState, rho0: f64, u_p: f64) -> f64 {
             let w = 0.25 * (model.gamma + 1.0) * u_p;
             w + w.hypot(model.bulk_sound_speed)
         }
+        EquationOfState::IdealGas(model) => 0.5 * (model.gamma + 1.0) * u_p,
         EquationOfState::Logarithmic(model) => logarithmic_shock_velocity(model, rho0, u_p),
     }
 }

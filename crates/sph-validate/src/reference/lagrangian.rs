@@ -1,4 +1,4 @@
-//! One-dimensional Lagrangian solution of an elastic-plastic solid on a staggered mesh, planar and cylindrical.
+//! One-dimensional Lagrangian solution of an elastic-plastic solid on a staggered mesh, planar, cylindrical and spherical.
 //!
 //! Nodes carry r and u, zones carry ρ, e and the deviator (S_rr, S_θθ, S_zz). One step of the scheme, leapfrog in its
 //! synchronous form:
@@ -6,10 +6,10 @@
 //! $$ u^{n+1/2} = u^n + \tfrac12 \tau f^n / m, \quad r^{n+1} = r^n + \tau u^{n+1/2}, \quad
 //!    u^{n+1} = u^{n+1/2} + \tfrac12 \tau f^{n+1} / m. $$
 //!
-//! The strain rates of a zone of area A (per unit depth, or per unit depth and radian) at the half step are
-//! D_rr = Δu/Δr and D_θθ = u_mid/r_mid (0 in the plane); their sum is d ln A/dt exactly. Nodal forces follow from
-//! virtual work, δW = (σ_rr δD_rr + σ_θθ δD_θθ) A, so that the scheme conserves momentum (planar) and its energy
-//! error is that of the time step alone. dS/dt = 2G (D - tr D/3) with von Mises return; de = σ : D dt/ρ with the mean
+//! The strain rates of a zone of volume A (per unit depth, per unit depth and radian, per steradian) at the half step
+//! are D_rr = Δu/Δr and k D_θθ = d ln A/dt - D_rr, with k = 0, 1, 2 hoop directions in the plane, around an axis and
+//! around a point. Nodal forces follow from virtual work, δW = (σ_rr δD_rr + k σ_θθ δD_θθ) A, so that the scheme
+//! conserves momentum (planar) and its energy error is that of the time step alone. dS/dt = 2G (D - tr D/3) with von Mises return; de = σ : D dt/ρ with the mean
 //! stress of the step. Second order in smooth flow; shocks need the artificial viscosity, which is zero by default.
 //!
 //! Validity: no rotation (one dimension), constant shear modulus, surfaces free of traction or fixed.
@@ -40,6 +40,19 @@ pub enum Symmetry {
     Planar,
     /// Cylinders around the axis r = 0; plane strain along the axis.
     Cylindrical,
+    /// Spheres around the point r = 0.
+    Spherical,
+}
+
+impl Symmetry {
+    /// Number of hoop directions.
+    fn hoops(self) -> i32 {
+        match self {
+            Self::Planar => 0,
+            Self::Cylindrical => 1,
+            Self::Spherical => 2,
+        }
+    }
 }
 
 /// Condition at both ends of the mesh.
@@ -82,7 +95,7 @@ pub struct Zone {
     pub density: f64,
     /// Specific internal energy e [J/kg].
     pub energy: f64,
-    /// Deviator (S_rr, S_θθ, S_zz) [Pa]; S_yy in place of S_θθ in the plane.
+    /// Deviator (S_rr, S_θθ, S_zz) [Pa]; S_yy in place of S_θθ in the plane, S_φφ in place of S_zz around a point.
     pub deviator: [f64; 3],
 }
 
@@ -159,10 +172,16 @@ impl<'a> Mesh<'a> {
         zone.deviator[0] - (self.solid.pressure)(zone.density, zone.energy)
     }
 
-    /// Mass-weighted mean of r² over the mesh [m²]: (r1² + r2²)/2 of each zone is exact for uniform density.
+    /// Mass-weighted mean of r² over a cylindrical mesh [m²].
     pub fn mean_square_radius(&self) -> f64 {
-        let square = |k: usize| 0.5 * (self.radius[k].powi(2) + self.radius[k + 1].powi(2));
-        let sum: f64 = (0..self.zones.len()).map(|k| self.zone_mass[k] * square(k)).sum();
+        self.mean_power_of_radius(2)
+    }
+
+    /// Mass-weighted mean of r^d over the mesh [m^d], d = 2 around an axis and 3 around a point: (r1^d + r2^d)/2 of each
+    /// zone is exact for uniform density.
+    pub fn mean_power_of_radius(&self, d: i32) -> f64 {
+        let power = |k: usize| 0.5 * (self.radius[k].powi(d) + self.radius[k + 1].powi(d));
+        let sum: f64 = (0..self.zones.len()).map(|k| self.zone_mass[k] * power(k)).sum();
         sum / self.zone_mass.iter().sum::<f64>()
     }
 
@@ -247,21 +266,17 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Forces by virtual work: σ_rr pulls on both nodes with r_mid, σ_θθ pushes both inwards with half of the width.
+    /// Forces by virtual work.
     fn compute_forces(&mut self) {
         self.force.fill(0.0);
         for (k, zone) in self.zones.iter().enumerate() {
             let mean = -(self.solid.pressure)(zone.density, zone.energy) - self.viscous_pressure[k];
-            let radial = mean + zone.deviator[0];
-            let (lever, hoop) = match self.scheme.symmetry {
-                Symmetry::Planar => (1.0, 0.0),
-                Symmetry::Cylindrical => (
-                    0.5 * (self.radius[k] + self.radius[k + 1]),
-                    0.5 * (mean + zone.deviator[1]) * (self.radius[k + 1] - self.radius[k]),
-                ),
-            };
-            self.force[k] += radial * lever - hoop;
-            self.force[k + 1] -= radial * lever + hoop;
+            let (radial, hoop) = (mean + zone.deviator[0], mean + zone.deviator[1]);
+            let (r, hoops) = (&self.radius[k..k + 2], self.scheme.symmetry.hoops());
+            // Of k σ_θθ D_θθ A = σ_θθ (dA/dt - A D_rr); dA/dt = r2^k u2 - r1^k u1.
+            let lever = area(self.scheme.symmetry, r) / (r[1] - r[0]);
+            self.force[k] += radial * lever + hoop * (r[0].powi(hoops) - lever);
+            self.force[k + 1] -= radial * lever + hoop * (r[1].powi(hoops) - lever);
         }
         self.join_ends(|mesh| &mut mesh.force);
     }
@@ -284,6 +299,10 @@ impl<'a> Mesh<'a> {
             let weights = match self.scheme.symmetry {
                 Symmetry::Planar => [0.5, 0.5],
                 Symmetry::Cylindrical => [(2.0 * r[0] + r[1]) / 6.0, (r[0] + 2.0 * r[1]) / 6.0],
+                Symmetry::Spherical => {
+                    let (first, both, last) = (r[0] * r[0], 2.0 * r[0] * r[1], r[1] * r[1]);
+                    [(3.0 * first + both + last) / 12.0, (first + both + 3.0 * last) / 12.0]
+                }
             };
             self.zone_mass[k] = density * area(self.scheme.symmetry, r);
             self.node_mass[k] += density * weights[0] * (r[1] - r[0]);
@@ -293,11 +312,12 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// Area of a zone per unit depth (and radian).
+/// Volume of a zone per unit depth, per unit depth and radian, or per steradian.
 fn area(symmetry: Symmetry, r: &[f64]) -> f64 {
     match symmetry {
         Symmetry::Planar => r[1] - r[0],
         Symmetry::Cylindrical => 0.5 * (r[1] + r[0]) * (r[1] - r[0]),
+        Symmetry::Spherical => (r[0] * r[0] + r[0] * r[1] + r[1] * r[1]) * (r[1] - r[0]) / 3.0,
     }
 }
 
@@ -305,7 +325,9 @@ fn area(symmetry: Symmetry, r: &[f64]) -> f64 {
 struct Rates {
     radial: f64,
     hoop: f64,
-    /// Area at the end over area at the beginning [-].
+    /// Hoop rate of the third direction: that of the second around a point, zero else.
+    third: f64,
+    /// Volume at the end over volume at the beginning [-].
     expansion: f64,
 }
 
@@ -313,19 +335,24 @@ impl Rates {
     fn at_half_step(symmetry: Symmetry, r: &[f64], u: &[f64], tau: f64) -> Self {
         let half = [r[0] + 0.5 * tau * u[0], r[1] + 0.5 * tau * u[1]];
         let end = [r[0] + tau * u[0], r[1] + tau * u[1]];
-        let hoop = match symmetry {
-            Symmetry::Planar => 0.0,
-            Symmetry::Cylindrical => (u[0] + u[1]) / (half[0] + half[1]),
-        };
         let radial = (u[1] - u[0]) / (half[1] - half[0]);
-        Self { radial, hoop, expansion: area(symmetry, &end) / area(symmetry, r) }
+        let growth = |k: i32| (half[1].powi(k) * u[1] - half[0].powi(k) * u[0]) / area(symmetry, &half);
+        let (hoop, third) = match symmetry {
+            Symmetry::Planar => (0.0, 0.0),
+            Symmetry::Cylindrical => ((u[0] + u[1]) / (half[0] + half[1]), 0.0),
+            Symmetry::Spherical => {
+                let hoop = 0.5 * (growth(2) - radial);
+                (hoop, hoop)
+            }
+        };
+        Self { radial, hoop, third, expansion: area(symmetry, &end) / area(symmetry, r) }
     }
 }
 
 /// The zone at the end of the step: deviator with von Mises return, energy with the mean stress of the step.
 fn advanced(zone: &Zone, solid: &Solid<'_>, rates: &Rates, viscous: f64, tau: f64) -> Zone {
-    let third = (rates.radial + rates.hoop) / 3.0;
-    let rate = [rates.radial - third, rates.hoop - third, -third];
+    let mean = (rates.radial + rates.hoop + rates.third) / 3.0;
+    let rate = [rates.radial - mean, rates.hoop - mean, rates.third - mean];
     let trial: [f64; 3] =
         std::array::from_fn(|a| zone.deviator[a] + 2.0 * solid.shear_modulus * rate[a] * tau);
     let mises = (1.5 * trial.iter().map(|s| s * s).sum::<f64>()).sqrt();

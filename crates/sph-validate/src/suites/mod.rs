@@ -32,12 +32,25 @@
 //! suite. A suite draws no random number without a fixed seed: a run gives the same bits each time, on any number of
 //! threads.
 
+pub mod acoustic;
 pub mod collapse;
 pub mod disorder;
+pub mod gas;
+pub mod piston;
+pub mod plate_impact;
 pub mod riemann;
+pub mod rigid_rotation;
+pub mod shells;
 pub mod sound_wave;
 pub mod spall;
+pub mod spinning_disc;
+mod strip;
+pub mod taylor_bar;
 pub mod verny;
+pub mod vibration;
+mod window;
+pub mod window_porous;
+pub mod window_solid;
 
 use sph_io::field_image::FieldImage;
 use sph_io::plot::Figure;
@@ -56,6 +69,17 @@ pub static ALL: &[&dyn Suite] = &[
     &disorder::Disorder,
     &spall::Spall,
     &collapse::Collapse,
+    &piston::Piston,
+    &plate_impact::PlateImpact,
+    &window_solid::WindowSolid,
+    &window_porous::WindowPorous,
+    &spinning_disc::SpinningDisc,
+    &rigid_rotation::RigidRotation,
+    &vibration::Vibration,
+    &shells::Shells,
+    &taylor_bar::TaylorBar,
+    &gas::Gas,
+    &acoustic::Acoustic,
 ];
 
 /// A problem with a known answer.

@@ -1,0 +1,220 @@
+//! Solid copper in the moving window: a steady shock in a box through which the medium streams, with an exact answer.
+//!
+//! A period of 10 × 4 particles (D = 1 µm), a box of n particle sizes, u_p from 50 m/s (two waves) to 800 m/s (overdriven).
+//! In the two-wave cases the inlet is impedance-matched: the precursor leaves through it, and the window sees the plastic
+//! shock in the medium behind the precursor.
+//!
+//! Measured: the shock velocity from the front and from the balance of mass behind it, in % off the exact one; the stress
+//! behind the shock; the density of the packing beside the particles' own; stress ahead of the shock (the precursor).
+//!
+//! Reference: exact, jump conditions of both waves ([`sph_materials::hugoniot`]). The window counts lengths of the
+//! undisturbed medium: the shock velocity is the mass flux through the front over its density.
+
+use std::time::Instant;
+
+use sph_core::{Components, Dim2, Domain, Particle, Particles};
+use sph_io::plot::{Axis, Figure, Series};
+use sph_materials::hugoniot::{PistonWaves, piston};
+use sph_materials::{Jump, Material};
+use sph_window::{FeedSample, InletKind, PlateauMargins, Window, WindowSettings};
+
+use super::window::{Averages, advance, outcome};
+use super::{About, Drawing, Picture, ReferenceKind, Suite};
+use crate::case::{Case, SchemeName, Tier};
+use crate::error::ValidateError;
+use crate::metric::{Measurement, Metric};
+use crate::outcome::{Curve, Outcome};
+use crate::plots;
+use crate::run::material;
+use crate::watch::Watch;
+
+const SIZE: f64 = 1e-6;
+/// Length of the medium that is fed [D].
+const FED: f64 = 2500.0;
+
+/// Shock velocity from the front, off the exact one.
+const FRONT: Metric = Metric::value("front_velocity_error", "%");
+/// Shock velocity from the balance of mass, off the exact one.
+const BALANCE: Metric = Metric::value("mass_balance_error", "%");
+/// -σ_xx behind the shock, off the exact one.
+const STRESS: Metric = Metric::value("stress_error", "%");
+/// Density of the packing over the particles' own, less one.
+const PACKING: Metric = Metric::value("packing_excess", "%");
+/// Shock velocity from the front.
+const VELOCITY: Metric = Metric::value("shock_velocity", "m/s");
+/// -σ_xx ahead of the shock.
+const AHEAD: Metric = Metric::value("stress_ahead", "GPa");
+
+/// Variants: u_p [m/s]; the last is overdriven.
+const VARIANTS: [(&str, f64); 5] =
+    [("50", 50.0), ("100", 100.0), ("200", 200.0), ("400", 400.0), ("800-overdriven", 800.0)];
+
+/// The suite.
+pub struct WindowSolid;
+
+impl Suite for WindowSolid {
+    fn about(&self) -> About {
+        About {
+            name: "window-solid",
+            title: "Solid copper in the moving window",
+            resolution: "length of the box in particle sizes",
+            reference: ReferenceKind::Analytic,
+            gates: include_str!("../../../../validation/window-solid/gates.ron"),
+        }
+    }
+
+    fn cases(&self, tier: Tier) -> Vec<Case> {
+        let variants = match tier {
+            Tier::Quick => &VARIANTS[2..3],
+            Tier::Full => &VARIANTS[..],
+        };
+        let resolutions: &[u32] = match tier {
+            Tier::Quick => &[120],
+            Tier::Full => &[120, 180, 240],
+        };
+        let grid = |&(name, _): &(&'static str, f64)| {
+            // Printed, the second scheme costs four times the third.
+            let schemes: &[SchemeName] =
+                if name == "200" { &SchemeName::ALL } else { &[SchemeName::Csph, SchemeName::TkcHancock] };
+            let grid = Case::grid("window-solid", schemes, resolutions).into_iter();
+            grid.map(|case| case.of_variant(name)).collect::<Vec<_>>()
+        };
+        variants.iter().flat_map(grid).collect()
+    }
+
+    fn work(&self, case: &Case) -> f64 {
+        let steps = FED * SIZE / 4200.0 * 4800.0 / SIZE / case.scheme.courant();
+        4.0 * f64::from(case.n) * steps * case.scheme.price()
+    }
+
+    fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
+        let started = Instant::now();
+        let copper = material("porous-copper")?;
+        let velocity = velocity_of(case);
+        let exact = Exact::new(&copper, velocity)?;
+        let settings = WindowSettings {
+            inlet: exact.inlet(),
+            plateau: PlateauMargins { front: 20.0, outlet: 8.0 },
+            ..WindowSettings::new(f64::from(case.n) * SIZE, velocity)
+        };
+        let fault = |source| ValidateError::Window { case: case.to_string(), source: Box::new(source) };
+        let sample = sample(copper.reference_density).map_err(fault)?;
+        let mut window =
+            Window::new(sample, vec![copper.clone()], case.scheme.settings(), settings).map_err(fault)?;
+        let means = advance(case, &mut window, watch, FED * SIZE)?;
+        let measurements = exact.measure(&window, &means, copper.reference_density);
+        let curves = vec![Curve::new("velocity", vec![(velocity, means.front_velocity(&window))])];
+        Ok(outcome(case, &window, measurements, curves, Vec::new(), started))
+    }
+
+    fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
+        let copper = material("porous-copper")?;
+        let rest = copper.reference_density;
+        let exact: Result<Vec<(f64, f64)>, ValidateError> = (20..=850)
+            .step_by(10)
+            .map(|u_p| Ok((f64::from(u_p), Exact::new(&copper, f64::from(u_p))?.velocity(rest))))
+            .collect();
+        let title = "Solid copper in the moving window: shock velocity";
+        let mut figure = Figure::new(title, Axis::new("u_p [m/s]"), Axis::new("u_s [m/s]"))
+            .with(plots::line(Series::dashed, "exact", &exact?).with_color(plots::BLACK));
+        for scheme in SchemeName::ALL {
+            let of_scheme = outcomes.iter().filter(|o| o.case.scheme == scheme);
+            let points: Vec<(f64, f64)> =
+                of_scheme.filter_map(|o| o.curve("velocity").first().copied()).collect();
+            if !points.is_empty() {
+                figure = figure.with(plots::line(Series::points, scheme.title(), &points));
+            }
+        }
+        Ok(vec![Picture {
+            name: "window-solid".into(),
+            caption:
+                "velocity of the shock that the window follows, relative to the medium behind the precursor, \
+                      from the front"
+                    .into(),
+            drawing: Drawing::Plot(figure),
+        }])
+    }
+}
+
+fn velocity_of(case: &Case) -> f64 {
+    VARIANTS.iter().find(|(name, _)| *name == case.variant).map_or(VARIANTS[0].1, |(_, velocity)| *velocity)
+}
+
+/// The wave that the window follows, and the one that runs ahead of it.
+struct Exact {
+    precursor: Option<Jump>,
+    shock: Jump,
+}
+
+impl Exact {
+    fn new(copper: &Material, velocity: f64) -> Result<Self, ValidateError> {
+        Ok(match piston(copper, velocity)? {
+            PistonWaves::TwoWave { precursor, plastic } => {
+                Self { precursor: Some(precursor), shock: plastic }
+            }
+            PistonWaves::Elastic { wave: shock }
+            | PistonWaves::Fluid { shock }
+            | PistonWaves::Overdriven { shock } => Self { precursor: None, shock },
+        })
+    }
+
+    fn inlet(&self) -> InletKind {
+        match self.precursor {
+            Some(_) => InletKind::ImpedanceMatched { wave_speed: None },
+            None => InletKind::FixedVelocity,
+        }
+    }
+
+    /// Mass flux through the shock over the density of the undisturbed medium [m/s].
+    fn velocity(&self, undisturbed: f64) -> f64 {
+        self.shock.shock_velocity() * self.shock.ahead.density / undisturbed
+    }
+
+    fn measure(&self, window: &Window<Dim2>, means: &Averages, undisturbed: f64) -> Vec<Measurement> {
+        let exact = self.velocity(undisturbed);
+        let percent = |value: f64, exact: f64| 100.0 * (value / exact - 1.0);
+        let front = means.front_velocity(window);
+        let stress = self.shock.behind.longitudinal_stress;
+        vec![
+            Measurement::error_of(FRONT, percent(front, exact)),
+            Measurement::error_of(BALANCE, percent(means.balance_velocity(window), exact)),
+            Measurement::error_of(STRESS, percent(means.stress, stress)),
+            Measurement::error_of(PACKING, 100.0 * (means.packing_density / means.own_density - 1.0)),
+            Measurement::new(VELOCITY, front, exact),
+            Measurement::new(AHEAD, -1e-9 * means.stress_ahead, -1e-9 * self.shock.ahead.longitudinal_stress),
+        ]
+    }
+}
+
+/// One period: 10 × 4 particles.
+fn sample(density: f64) -> Result<FeedSample<Dim2>, sph_window::WindowError> {
+    let mut particles = Particles::default();
+    for (i, j) in (0..10).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let position = [(f64::from(i) + 0.5) * SIZE, (f64::from(j) + 0.5) * SIZE].into();
+        let id = particles.len() as u64;
+        particles.push(Particle::at_rest(id, position, density * SIZE * SIZE, SIZE, density));
+    }
+    let upper = [10.0 * SIZE, 4.0 * SIZE].into();
+    FeedSample::new(particles, Domain::new([0.0, 0.0].into(), upper, Components::from_fn(|_| true)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variants_have_the_structure_that_they_say() {
+        let copper = material("porous-copper").expect("in the library");
+        for (name, velocity) in VARIANTS {
+            let exact = Exact::new(&copper, velocity).expect("solvable");
+            assert_eq!(exact.precursor.is_none(), name.ends_with("overdriven"), "{name}");
+        }
+    }
+
+    #[test]
+    fn sample_is_solid() {
+        let sample = sample(8960.0).expect("good");
+        assert!((sample.mean_density() - 8960.0).abs() < 1e-6);
+        assert!((sample.period() - 1e-5).abs() < 1e-12);
+    }
+}

@@ -115,5 +115,5 @@ fn plates_of_two_metals_share_the_pressure_and_velocity_of_the_impedance_match()
 }
 
 /// Largest mean errors: of the pressure, relative, and of the velocity, relative to the impact's.
-const PRESSURE: f64 = 0.01;
-const VELOCITY: f64 = 0.005;
+const PRESSURE: f64 = 0.001;
+const VELOCITY: f64 = 0.0005;

@@ -48,9 +48,12 @@ fn whole(block: &str) -> String {
 fn every_piece_of_a_case_file_is_read() {
     let mut count = 0;
     for (page, text) in pages() {
-        for block in blocks(&text, "ron") {
+        // Whole files of other programs stand in brackets; a piece of a case file begins with the name of its field.
+        for block in blocks(&text, "ron").into_iter().filter(|block| !block.starts_with('(')) {
             let case = whole(block);
-            assert!(config::parse(&case, &page).is_ok(), "{page}:\n{case}");
+            if let Err(error) = config::parse(&case, &page) {
+                panic!("{page}:\n{error}");
+            }
             count += 1;
         }
     }

@@ -54,7 +54,9 @@ fn fault(package: &str, message: String) -> Fault {
 
 /// Every package takes the lints of the workspace.
 pub fn check_lints(texts: &[Text]) -> Vec<Fault> {
-    let manifests = texts.iter().filter(|text| text.path.ends_with("/Cargo.toml"));
+    // Fuzz targets are a workspace of their own.
+    let of_workspace = |path: &str| path.ends_with("/Cargo.toml") && !path.contains("/fuzz/");
+    let manifests = texts.iter().filter(|text| of_workspace(&text.path));
     let careless = manifests.filter(|text| !text.content.contains("[lints]\nworkspace = true"));
     careless
         .map(|text| Fault {

@@ -105,7 +105,15 @@ pub fn write<H: Serialize>(
 pub fn read<H: DeserializeOwned>(path: impl AsRef<Path>) -> Result<Checkpoint<H>, IoError> {
     let path = path.as_ref();
     let bytes = std::fs::read(path).map_err(IoError::file(path, "read"))?;
-    let (header, columns) = format::decode(&bytes).map_err(|fault| fault.at(path))?;
+    read_bytes(&bytes, path)
+}
+
+/// As [`read`], of bytes that are in memory; `path` is what errors name.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes<H: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<Checkpoint<H>, IoError> {
+    let (header, columns) = format::decode(bytes).map_err(|fault| fault.at(path))?;
     let header = postcard::take_from_bytes(header).ok().filter(|(_, rest)| rest.is_empty());
     let Some((header, _)) = header else {
         return Err(IoError::mismatch(path, "the header is whole, and of another program or version of it"));

@@ -16,15 +16,16 @@ const MACHINE_FOLDERS: [&str; 4] = ["work", "tmp", "root", "home"];
 const PRINTS: [&str; 4] = ["println!", "eprintln!", "print!", "eprint!"];
 
 /// Sources that may print, beside `src/bin/`, and why.
-const MAY_PRINT: [(&str, &str); 4] = [
+const MAY_PRINT: [(&str, &str); 5] = [
     ("crates/sph-hugoniot/src/cli.rs", "what the user asked for, and the faults of a case file"),
     ("crates/sph-hugoniot/src/run.rs", "failed points and the summary at the end of a run"),
     ("crates/sph-validate/src/cli.rs", "the tables and the gates that were missed"),
     ("xtask/src/", "a program"),
+    ("crates/sph-hugoniot/src/study/mod.rs", "tells of a study as `run.rs` does of a run"),
 ];
 
 /// Sources with unsafe code, and why.
-const MAY_BE_UNSAFE: [(&str, &str); 10] = [
+const MAY_BE_UNSAFE: [(&str, &str); 13] = [
     ("crates/sph-core/src/lanes/avx2.rs", "instructions of the processor"),
     ("crates/sph-core/src/lanes/avx512.rs", "instructions of the processor"),
     (
@@ -36,7 +37,10 @@ const MAY_BE_UNSAFE: [(&str, &str); 10] = [
     ("crates/sph-riemann/src/pass/contact.rs", "records loaded without bounds checks"),
     ("crates/sph-riemann/src/pass/gradient.rs", "records loaded without bounds checks"),
     ("crates/sph-riemann/src/pass/mod.rs", "records loaded without bounds checks"),
-    ("crates/sph-riemann/src/update.rs", "the tiles of all columns of a step"),
+    ("crates/sph-riemann/src/pass/centering.rs", "records loaded without bounds checks"),
+    ("crates/sph-riemann/src/pass/closure.rs", "records loaded without bounds checks"),
+    ("crates/sph-riemann/src/pass/sums.rs", "sums of pairs added into a tile's buffer without bounds checks"),
+    ("crates/sph-riemann/src/update/mod.rs", "the tiles of all columns of a step"),
     ("crates/sph-riemann/tests/allocation.rs", "an allocator that counts"),
 ];
 

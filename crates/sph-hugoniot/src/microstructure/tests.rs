@@ -1,3 +1,5 @@
+//! Samples of every medium: porosity, symmetry, the bits of the shipped one.
+
 use super::*;
 use crate::config::case::Pores;
 

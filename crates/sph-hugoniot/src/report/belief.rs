@@ -1,7 +1,7 @@
 //! Whether a point can be believed: what is asked of it, and from where on the answer is yes.
 //!
-//! The bounds are those of this program's own trials ("Reading the results" in the guide); a verdict is a hint where to
-//! look, not a proof.
+//! The bounds are conventions chosen by the authors, not results of measurements ("Reading the report" in the guide); a
+//! verdict is a hint where to look, not a proof.
 
 use sph_io::html::{Check, Verdict};
 
@@ -178,8 +178,7 @@ fn volume_work(outcome: &PointOutcome) -> Answer {
         share,
         "Virtual work of volume consistency",
         percent(share),
-        "∫|P dV| of the density that the treatment changed, over the energy that the shock put in. It falls with finer \
-         particles.",
+        "∫|P dV| of the density that the treatment changed, over the energy that the shock put in.",
     )
 }
 
@@ -223,7 +222,8 @@ fn pores(case: &Case) -> Answer {
         -across,
         "Resolution of the pores",
         value,
-        "Fewer than eight particles across a pore are for trials: run again with half the `particle_size` and compare.",
+        "A rule of thumb: eight particles across a pore at least. No number of them proves that u_s has converged: run \
+         again with half the `particle_size` and compare.",
     )
 }
 

@@ -18,7 +18,8 @@
 //! let resolve = |schema: Schema, whole: &std::ops::Range<usize>, faults: &sph_case::Faults| {
 //!     Checker { faults }.needed(&schema.cell, "cell", whole, 1e-9, 1.0)
 //! };
-//! assert_eq!(read("(cell: \"20 um\")", "case.ron", "", resolve).unwrap(), 20e-6);
+//! let cell = read("(cell: \"20 um\")", "case.ron", "", resolve).unwrap();
+//! assert!((cell - 20e-6).abs() < 1e-18);
 //! let error = read("(cell: \"20 GPa\", size: 3)", "case.ron", "", resolve).unwrap_err();
 //! assert_eq!(error.faults.len(), 2);
 //! assert!(error.to_string().contains("`GPa` is a unit of pressure, but this field is a length"));

@@ -97,7 +97,7 @@ fn a_run_in_an_odd_place_tells_its_end_as_json_that_fits_the_schemas() {
     let status = assert_fits(Schema::Status, &hugoniot(&place, &["status", out, "--json"]).stdout);
     assert_eq!(status["state"], "done");
     assert!(
-        status["go_on"].as_str().unwrap().contains("'der Fall.ron' --out 'Ergebnisse 1' --resume"),
+        status["go_on"].as_str().unwrap().contains("'der Fall.ron' --up 300 --out 'Ergebnisse 1' --resume"),
         "{status}"
     );
     let words = text(&hugoniot(&place, &["status", out]).stdout);

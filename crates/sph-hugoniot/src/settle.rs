@@ -12,7 +12,7 @@
 //! lies about that point like a mirror image there is no drift either. The third sees it: the uncertainty looks further back.
 //!
 //! It is made of two parts, added in squares: the standard error of the mean of the stretch by batch means
-//! ([`crate::statistics`]), which counts autocorrelation within it, and [`DRIFT_PART`] of the drift, which stands for all
+//! ([`crate::statistics`]), which counts autocorrelation within it, and `DRIFT_PART` of the drift, which stands for all
 //! that is slower than the stretch: the larger of the change within it and the change against the stretch before it, as far
 //! as that lies after start-up.
 //!

@@ -7,7 +7,7 @@
 //! **Porosity is met by adjusting the cut.** With m the porosity asked for, N (1 - 1/m) points are to be removed: those of
 //! the least distance to the voids, so that all boundaries move alike. m, and with it the mean density, is then the same
 //! at every particle size, to a particle or two. Pores on a lattice keep their symmetry: whole shells of equal distance
-//! from the centers are removed at every pore alike ([`cut`]), as long as they miss m by less than 0.3 %; else pairs of
+//! from the centers are removed at every pore alike (`cut`), as long as they miss m by less than 0.3 %; else pairs of
 //! single points are taken or given back, and pores stay alike. The parts of materials
 //! are met in the same way.
 //!

@@ -2,7 +2,7 @@
 //!
 //! Sizes are drawn first, from their distribution; then each is placed, the largest first, at a place and angle drawn
 //! uniformly, again and again until it keeps its gap from all that stand (random sequential addition). When one does not
-//! fit after [`TRIES`] places, all are taken up and placed anew, [`ROUNDS`] times.
+//! fit after `TRIES` places, all are taken up and placed anew, `ROUNDS` times.
 //!
 //! The generator is PCG (M. O'Neill, 2014), logarithms and sines are of `libm`: a seed gives the same pores on every
 //! machine.

@@ -61,7 +61,7 @@ impl Suite for Acoustic {
             title: "Plane waves: oblique, and on jittered clouds",
             resolution: "particles along an edge of the box",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/acoustic/gates.ron"),
+            gates: include_str!("../../validation/acoustic/gates.ron"),
         }
     }
 

@@ -44,7 +44,7 @@ impl Suite for Collapse {
             title: "Pore collapse",
             resolution: "particles along a cell",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/collapse/gates.ron"),
+            gates: include_str!("../../validation/collapse/gates.ron"),
         }
     }
 

@@ -40,7 +40,7 @@ impl Suite for Disorder {
             title: "Riemann problem on disordered particles",
             resolution: "particles along x",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/disorder/gates.ron"),
+            gates: include_str!("../../validation/disorder/gates.ron"),
         }
     }
 

@@ -86,7 +86,7 @@ impl Suite for Gas {
             title: "Ideal gas: Sod and Noh",
             resolution: "particles in a length of 1 m",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/gas/gates.ron"),
+            gates: include_str!("../../validation/gas/gates.ron"),
         }
     }
 

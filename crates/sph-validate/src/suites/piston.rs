@@ -88,7 +88,7 @@ impl Suite for Piston {
             title: "Elastic-plastic piston",
             resolution: "particles along x",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/piston/gates.ron"),
+            gates: include_str!("../../validation/piston/gates.ron"),
         }
     }
 

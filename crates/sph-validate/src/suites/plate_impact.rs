@@ -56,7 +56,7 @@ impl Suite for PlateImpact {
             title: "Symmetric plate impact",
             resolution: "particles across the target",
             reference: ReferenceKind::External,
-            gates: include_str!("../../../../validation/plate-impact/gates.ron"),
+            gates: include_str!("../../validation/plate-impact/gates.ron"),
         }
     }
 

@@ -107,7 +107,7 @@ impl Suite for Riemann {
             reference: ReferenceKind::Analytic,
             gates: match self.user {
                 Some(_) => "",
-                None => include_str!("../../../../validation/riemann/gates.ron"),
+                None => include_str!("../../validation/riemann/gates.ron"),
             },
         }
     }

@@ -50,7 +50,7 @@ impl Suite for RigidRotation {
             title: "Rigid rotation of a body under stress",
             resolution: "steps of a turn",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/rigid-rotation/gates.ron"),
+            gates: include_str!("../../validation/rigid-rotation/gates.ron"),
         }
     }
 

@@ -86,7 +86,7 @@ impl Suite for Shells {
             title: "Collapsing shells: other radii, lattice, metal; sphere",
             resolution: "particles across the wall (D0 = 20 mm / n)",
             reference: ReferenceKind::External,
-            gates: include_str!("../../../../validation/shells/gates.ron"),
+            gates: include_str!("../../validation/shells/gates.ron"),
         }
     }
 

@@ -56,7 +56,7 @@ impl Suite for SoundWave {
             title: "Longitudinal sound wave",
             resolution: "particles along x",
             reference: ReferenceKind::External,
-            gates: include_str!("../../../../validation/sound-wave/gates.ron"),
+            gates: include_str!("../../validation/sound-wave/gates.ron"),
         }
     }
 

@@ -6,7 +6,7 @@
 //! ([`sph_materials::Failure::VoidGrowth`]).
 //!
 //! Measured: the thickness of the scab, by the mass behind the widest gap between columns, against the place where the
-//! wave diagram first reaches T ([`WaveDiagram`]); and the tensile strength that an experiment would read from the
+//! wave diagram first reaches T (`WaveDiagram`); and the tensile strength that an experiment would read from the
 //! pull-back of the rear surface, T = ½ ρ0 c0 Δu (Novikov).
 //!
 //! Source: wave diagram of plate impact, e.g. T. Antoun et al., *Spall Fracture*, Springer (2003), chapters 2 and 4.
@@ -53,7 +53,7 @@ impl Suite for Spall {
             title: "Spall of a copper plate",
             resolution: "particles across the flyer",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/spall/gates.ron"),
+            gates: include_str!("../../validation/spall/gates.ron"),
         }
     }
 

@@ -45,7 +45,7 @@ impl Suite for SpinningDisc {
             title: "Spinning elastic disc",
             resolution: "particles along the radius",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/spinning-disc/gates.ron"),
+            gates: include_str!("../../validation/spinning-disc/gates.ron"),
         }
     }
 

@@ -107,7 +107,7 @@ impl Suite for TaylorBar {
             title: "Taylor bar",
             resolution: "particles along the radius",
             reference: ReferenceKind::External,
-            gates: include_str!("../../../../validation/taylor-bar/gates.ron"),
+            gates: include_str!("../../validation/taylor-bar/gates.ron"),
         }
     }
 

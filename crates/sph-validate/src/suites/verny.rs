@@ -62,7 +62,7 @@ impl Suite for Verny {
             title: "Verney's cylindrical shell",
             resolution: "rings of particles (D0 = 20 mm / n)",
             reference: ReferenceKind::External,
-            gates: include_str!("../../../../validation/verny/gates.ron"),
+            gates: include_str!("../../validation/verny/gates.ron"),
         }
     }
 

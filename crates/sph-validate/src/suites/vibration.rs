@@ -63,7 +63,7 @@ impl Suite for Vibration {
             title: "Vibrating elastic ring and plate",
             resolution: "particles across the thickness",
             reference: ReferenceKind::External,
-            gates: include_str!("../../../../validation/vibration/gates.ron"),
+            gates: include_str!("../../validation/vibration/gates.ron"),
         }
     }
 

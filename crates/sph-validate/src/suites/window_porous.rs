@@ -83,7 +83,7 @@ impl Suite for WindowPorous {
             title: "Porous copper in the moving window, shut pores",
             resolution: "particles along an edge of the cell",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/window-porous/gates.ron"),
+            gates: include_str!("../../validation/window-porous/gates.ron"),
         }
     }
 

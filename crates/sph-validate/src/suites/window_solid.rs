@@ -59,7 +59,7 @@ impl Suite for WindowSolid {
             title: "Solid copper in the moving window",
             resolution: "length of the box in particle sizes",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../../../validation/window-solid/gates.ron"),
+            gates: include_str!("../../validation/window-solid/gates.ron"),
         }
     }
 

@@ -4,8 +4,8 @@ use super::*;
 use crate::case::Tier;
 use crate::watch::Watch;
 
-const IMPACT: &str = include_str!("../../../../validation/cases/riemann-impact.ron");
-const RELEASE: &str = include_str!("../../../../validation/cases/riemann-release.ron");
+const IMPACT: &str = include_str!("../../validation/cases/riemann-impact.ron");
+const RELEASE: &str = include_str!("../../validation/cases/riemann-release.ron");
 
 fn faults_of(text: &str) -> String {
     match parse(text, "my.ron") {

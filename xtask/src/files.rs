@@ -36,6 +36,9 @@ pub fn texts(root: &Path) -> anyhow::Result<Vec<Text>> {
         for entry in entries {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if path.is_symlink() {
+                continue; // What it leads to is read where it stands.
+            }
             if path.is_dir() {
                 if !BUILT.contains(&name.as_str())
                     && (!name.starts_with('.') || HIDDEN.contains(&name.as_str()))

@@ -19,7 +19,7 @@ fn metal(name: &str, density: f64, c: f64, s: f64, gamma: f64) -> (Material, Mie
     let material = Material {
         name: name.into(),
         reference_density: density,
-        equation_of_state: EquationOfState::MieGruneisen(hugoniot.clone()),
+        equation_of_state: EquationOfState::MieGruneisen(hugoniot),
         strength: Strength::Fluid,
         failure: Failure::None,
         sound_speed: SoundSpeedModel::Thermodynamic,

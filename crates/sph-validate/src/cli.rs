@@ -122,7 +122,11 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let jobs = plan(suites, schemes, arguments.tier);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.map_or(cores, usize::from);
-    let label = format!("validation, {} tier, {threads} threads", arguments.tier.as_str());
+    let what = match &arguments.case {
+        Some(case) => case.display().to_string(),
+        None => format!("{} tier", arguments.tier.as_str()),
+    };
+    let label = format!("validation, {what}, {threads} threads");
     let progress = Mutex::new(Progress::new(1.0, label, Mode::Auto));
     let interrupt = stop_on_interrupt();
     let taken_over =
@@ -182,7 +186,10 @@ fn print_tables(report: &Report) {
         println!("{}", report.table(suite));
     }
     let missed: Vec<_> = report.failures().collect();
-    println!("{} of {} gates passed", report.n_gates() - missed.len(), report.n_gates());
+    match report.n_gates() {
+        0 => println!("there are no gates: the figures stand beside their references"),
+        gates => println!("{} of {gates} gates passed", gates - missed.len()),
+    }
     for row in missed {
         let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
         let gate = row.gate.map_or(String::new(), |gate| gate.to_string());

@@ -173,9 +173,9 @@ pub fn convergence(about: &About, outcomes: &[&Outcome], metric: &Metric) -> Fig
     resolutions.dedup();
     let extremes = |fold: fn(f64, f64) -> f64, start: f64| points().map(|(_, error)| error).fold(start, fold);
     let [least, greatest] = [extremes(f64::min, f64::INFINITY), extremes(f64::max, 0.0)];
-    // The slope covers the last doubling and ends below the last point of the best curve: it hides nothing.
-    let foot = 0.5 * least;
-    let y = Axis::log(format!("{} [{}]", metric.title(), metric.unit)).with_range(0.6 * foot, 1.5 * greatest);
+    // The slopes part from one point over the last doubling, below all points: they hide nothing.
+    let top = 0.8 * least;
+    let y = Axis::log(format!("{} [{}]", metric.title(), metric.unit)).with_range(0.12 * top, 1.5 * greatest);
     let x = Axis::log(about.resolution).with_ticks(&resolutions);
     let mut figure = Figure::new(format!("{}: convergence", about.title), x, y);
     for (label, points) in curves.iter().filter(|(_, points)| !points.is_empty()) {
@@ -186,7 +186,7 @@ pub fn convergence(about: &About, outcomes: &[&Outcome], metric: &Metric) -> Fig
         return figure;
     };
     let slope = |order: f64| Annotation::Slope {
-        start: (0.5 * last, foot * 2f64.powf(order)),
+        start: (0.5 * last, top),
         to_x: last,
         order: -order,
         text: format!("order {order}"),

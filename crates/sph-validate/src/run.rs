@@ -58,6 +58,16 @@ impl<'w, D: SolidDimension> Run<'w, D> {
         Ok(())
     }
 
+    /// Changes particles by hand; what that puts in of momentum and energy counts as put in by a constraint.
+    pub fn change(&mut self, change: impl FnOnce(&mut Particles<D>)) {
+        let before = self.simulation.totals();
+        change(self.simulation.particles_mut());
+        let after = self.simulation.totals();
+        self.put_in.0 += after.momentum - before.momentum;
+        let kinetic = after.kinetic_energy - before.kinetic_energy;
+        self.put_in.1 += kinetic + (after.internal_energy - before.internal_energy);
+    }
+
     /// Steps to `end` [s]; progress is told as the share of `end`.
     pub fn advance(&mut self, end: f64) -> Result<(), ValidateError> {
         // A remainder of round-off size is no step.

@@ -1,6 +1,7 @@
-//! Runs cases side by side: one case a thread, the costliest first, each simulation on one thread of its own.
+//! Runs cases side by side, the costliest first. A simulation has one thread of its own, or as many as its share of all
+//! work deserves: on many cores the costliest run alone would last longer than all others together.
 //!
-//! A case gives the same bits whatever runs beside it.
+//! A case gives the same bits whatever runs beside it, on any number of threads.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -91,7 +92,8 @@ pub fn run_all<'s>(jobs: Vec<Job<'s>>, settings: Settings<'_>, listener: Listene
             scope.spawn(|| {
                 let next = || lock(&queue).pop_front();
                 while let Some(k) = next() {
-                    let result = run_one(&jobs[k], settings, &|share| listener(meter.note(k, share), None));
+                    let tell = |share| listener(meter.note(k, share), None);
+                    let result = run_one(&jobs[k], settings, meter.threads(k, settings.threads), &tell);
                     listener(meter.finish(k), Some((&jobs[k].case, &result)));
                     lock(&finished).push((k, result));
                 }
@@ -114,20 +116,21 @@ fn kept<'j>(jobs: &'j [Job<'_>], store: Option<&'j Store>) -> impl Iterator<Item
 fn run_one(
     job: &Job<'_>,
     settings: Settings<'_>,
+    threads: usize,
     tell: &(dyn Fn(f64) + Sync),
 ) -> Result<Outcome, ValidateError> {
     let watch = Watch::new(tell, settings.interrupt);
     watch.check()?;
-    let outcome = run_alone(job, watch)?;
+    let outcome = run_alone(job, threads, watch)?;
     if let Some(store) = settings.store {
         store.save(&outcome, &job.suite.parameters())?;
     }
     Ok(outcome)
 }
 
-/// One run, with a pool of one thread for all of its parallel loops.
-fn run_alone(job: &Job<'_>, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
-    match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+/// One run, with a pool of its own for all of its parallel loops.
+fn run_alone(job: &Job<'_>, threads: usize, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(|| job.suite.run(&job.case, watch)),
         // Without a pool of its own a case still runs, in the shared one.
         Err(_) => job.suite.run(&job.case, watch),
@@ -155,6 +158,12 @@ impl Meter {
         }
     }
 
+    /// Threads of a run, of so many: its share of all work, one at least.
+    fn threads(&self, k: usize, threads: usize) -> usize {
+        let share = self.work[k] / self.work.iter().sum::<f64>();
+        ((threads as f64 * share).round() as usize).clamp(1, threads.max(1))
+    }
+
     fn note(&self, k: usize, share: f64) -> Status {
         self.shares[k].store(share.to_bits(), Ordering::Relaxed);
         self.status()
@@ -173,5 +182,24 @@ impl Meter {
             total: self.work.len(),
             share: done / self.work.iter().sum::<f64>(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_go_by_the_share_of_the_work() {
+        let of = |work: &[f64]| Meter {
+            work: work.to_vec(),
+            shares: work.iter().map(|_| AtomicU64::new(0)).collect(),
+            done: AtomicU64::new(0),
+        };
+        let one_large = of(&[8.0, 1.0, 1.0]);
+        assert_eq!([0, 1, 2].map(|k| one_large.threads(k, 10)), [8, 1, 1]);
+        assert_eq!([0, 1, 2].map(|k| one_large.threads(k, 1)), [1, 1, 1]);
+        assert_eq!(of(&[3.0]).threads(0, 4), 4, "one run has all threads");
+        assert_eq!(of(&[0.0]).threads(0, 4), 1, "work that is not known");
     }
 }

@@ -197,17 +197,7 @@ impl<'a> Mesh<'a> {
 
     /// Velocity at `place` [m/s], linear between the nodes; zero outside of the body, repeated where it is periodic.
     pub fn velocity_at(&self, place: f64) -> f64 {
-        let (first, last) = (self.radius[0], self.radius[self.radius.len() - 1]);
-        let place = match self.scheme.ends {
-            Ends::Periodic => first + (place - first).rem_euclid(last - first),
-            Ends::Free | Ends::Fixed => place,
-        };
-        let j = self.radius.partition_point(|&r| r <= place);
-        if j == 0 || j == self.radius.len() {
-            return 0.0;
-        }
-        let weight = (place - self.radius[j - 1]) / (self.radius[j] - self.radius[j - 1]);
-        self.velocity[j - 1] + weight * (self.velocity[j] - self.velocity[j - 1])
+        interpolated(&self.radius, &self.velocity, self.scheme.ends == Ends::Periodic, place)
     }
 
     /// Advances to `end` [s].
@@ -310,6 +300,18 @@ impl<'a> Mesh<'a> {
         }
         self.join_ends(|mesh| &mut mesh.node_mass);
     }
+}
+
+/// A column over the nodes at `place` [m], linear between them; zero outside of them, repeated where it is periodic.
+pub fn interpolated(nodes: &[f64], column: &[f64], is_periodic: bool, place: f64) -> f64 {
+    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    let place = if is_periodic { first + (place - first).rem_euclid(last - first) } else { place };
+    let j = nodes.partition_point(|&r| r <= place);
+    if j == 0 || j == nodes.len() {
+        return 0.0;
+    }
+    let weight = (place - nodes[j - 1]) / (nodes[j] - nodes[j - 1]);
+    column[j - 1] + weight * (column[j] - column[j - 1])
 }
 
 /// Volume of a zone per unit depth, per unit depth and radian, or per steradian.

@@ -40,6 +40,7 @@ pub mod piston;
 pub mod plate_impact;
 pub mod riemann;
 pub mod rigid_rotation;
+mod shell_stop;
 pub mod shells;
 pub mod sound_wave;
 pub mod spall;
@@ -64,14 +65,14 @@ use crate::watch::Watch;
 /// All suites, in the order of the report.
 pub static ALL: &[&dyn Suite] = &[
     &riemann::Riemann::PUBLISHED,
-    &sound_wave::SoundWave,
-    &verny::Verny,
+    &sound_wave::PUBLISHED,
+    &verny::PUBLISHED,
     &disorder::Disorder,
     &spall::Spall,
     &collapse::Collapse,
-    &piston::Piston,
+    &piston::Piston::OWN,
     &plate_impact::PlateImpact,
-    &window_solid::WindowSolid,
+    &window_solid::WindowSolid::OWN,
     &window_porous::WindowPorous,
     &spinning_disc::SpinningDisc,
     &rigid_rotation::RigidRotation,

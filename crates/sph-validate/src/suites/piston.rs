@@ -10,6 +10,8 @@
 //!
 //! Reference: exact, the jump conditions of both waves ([`crate::reference::staircase`]).
 //!
+//! A user's piston ([`Setup`]) is the plane in which two equal blocks meet, in any solid with a yield strength.
+//!
 //! Source: Ya. B. Zel'dovich and Yu. P. Raizer, Physics of Shock Waves and High-Temperature Hydrodynamic Phenomena,
 //! ch. XI; M. L. Wilkins, Meth. Comput. Phys. 3 (1964) 211.
 
@@ -20,11 +22,13 @@ use sph_materials::Material;
 use super::{About, Drawing, Picture, ReferenceKind, Suite, strip};
 use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
+use crate::gate::Significant;
 use crate::metric::{Measurement, Metric, column_means, crossing, mean_absolute_difference};
 use crate::outcome::{Curve, Outcome};
 use crate::plots;
 use crate::reference::staircase::Staircase;
 use crate::run::{Run, material};
+use crate::user::User;
 use crate::watch::Watch;
 
 const LENGTH: f64 = 0.05;
@@ -40,46 +44,68 @@ const PLASTIC_SHIFT: Metric = Metric::value("plastic_shift", "mm");
 /// -σ_xx behind the plastic shock.
 const PLATEAU_STRESS: Metric = Metric::value("plateau_stress", "GPa");
 
-/// One of the problems of the suite.
-struct Problem {
-    variant: &'static str,
-    material: &'static str,
-    /// u_p [m/s].
-    velocity: f64,
+/// What makes a problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The solid, at rest ahead of the piston.
+    pub material: Material,
+    /// Velocity u_p of the piston [m/s].
+    pub velocity: f64,
+    /// Length of a block [m].
+    pub length: f64,
     /// Time of the comparison [s].
-    duration: f64,
-    /// Two blocks that meet, or a block of imposed velocity.
-    mirrored: bool,
+    pub duration: f64,
+    /// Two blocks that meet, or a block of imposed velocity and one at rest.
+    pub mirrored: bool,
 }
 
-const COPPER: Problem = Problem {
-    variant: "copper",
-    material: "porous-copper",
-    velocity: 200.0,
-    duration: 7.5e-6,
-    mirrored: true,
-};
+impl Setup {
+    /// The two waves ahead of the piston.
+    pub fn waves(&self) -> Result<Staircase, ValidateError> {
+        Ok(Staircase::new(&self.material, self.velocity)?)
+    }
 
-const PROBLEMS: [Problem; 3] = [
-    COPPER,
-    Problem { variant: "copper-block", mirrored: false, ..COPPER },
-    Problem { variant: "aluminum", material: "aluminium-verney", velocity: 150.0, duration: 6e-6, ..COPPER },
+    /// Way of the fastest wave [m] through the solid until the end.
+    pub fn reach(&self) -> Result<f64, ValidateError> {
+        Ok(self.waves()?.waves().first().map_or(0.0, |wave| wave.wave_speed) * self.duration)
+    }
+}
+
+/// Variant, material of the library, u_p [m/s], time of the comparison [s], two blocks.
+type Published = (&'static str, &'static str, f64, f64, bool);
+
+const PUBLISHED: [Published; 3] = [
+    ("copper", "porous-copper", 200.0, 7.5e-6, true),
+    ("copper-block", "porous-copper", 200.0, 7.5e-6, false),
+    ("aluminum", "aluminium-verney", 150.0, 6e-6, true),
 ];
 
-impl Problem {
-    fn of(case: &Case) -> &'static Self {
-        PROBLEMS.iter().find(|problem| problem.variant == case.variant).unwrap_or(&PROBLEMS[0])
-    }
-
-    fn exact(&self) -> Result<(Material, Staircase), ValidateError> {
-        let material = material(self.material)?;
-        let stairs = Staircase::new(&material, self.velocity)?;
-        Ok((material, stairs))
-    }
+/// The suite: pistons in copper and aluminum, or a user's.
+pub struct Piston {
+    /// What the user asks for.
+    pub user: Option<User<Setup>>,
 }
 
-/// The suite.
-pub struct Piston;
+impl Piston {
+    /// The problems of the project.
+    pub const OWN: Self = Self { user: None };
+
+    fn setup(&self, variant: &str) -> Result<Setup, ValidateError> {
+        if let Some(user) = &self.user {
+            return Ok(user.problem.clone());
+        }
+        let of_name = PUBLISHED.iter().find(|problem| problem.0 == variant);
+        let &(_, name, velocity, duration, mirrored) = of_name.unwrap_or(&PUBLISHED[0]);
+        Ok(Setup { material: material(name)?, velocity, length: LENGTH, duration, mirrored })
+    }
+
+    fn variants(&self) -> Vec<&str> {
+        match &self.user {
+            Some(user) => vec![&user.name],
+            None => PUBLISHED.iter().map(|problem| problem.0).collect(),
+        }
+    }
+}
 
 impl Suite for Piston {
     fn about(&self) -> About {
@@ -88,50 +114,63 @@ impl Suite for Piston {
             title: "Elastic-plastic piston",
             resolution: "particles along x",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../validation/piston/gates.ron"),
+            gates: match self.user {
+                Some(_) => "",
+                None => include_str!("../../validation/piston/gates.ron"),
+            },
         }
     }
 
     fn cases(&self, tier: Tier) -> Vec<Case> {
+        if let Some(user) = &self.user {
+            return user.cases("piston");
+        }
         let resolutions: &[u32] = match tier {
             Tier::Quick => &[100, 200],
             Tier::Full => &[100, 200, 400],
         };
-        let cases = |problem: &Problem| {
+        let cases = |variant| {
             let grid = Case::grid("piston", &SchemeName::ALL, resolutions).into_iter();
-            grid.map(|case| case.of_variant(problem.variant)).collect::<Vec<_>>()
+            grid.map(move |case| case.of_variant(variant))
         };
-        PROBLEMS.iter().flat_map(cases).collect()
+        self.variants().into_iter().flat_map(cases).collect()
     }
 
     fn work(&self, case: &Case) -> f64 {
+        let Ok(setup) = self.setup(&case.variant) else { return 1.0 };
         let n = f64::from(case.n);
-        let steps = Problem::of(case).duration * 6000.0 * n / LENGTH / case.scheme.courant();
-        let blocks = if Problem::of(case).mirrored { 2.0 } else { 1.0 };
+        let speed = setup.material.longitudinal_sound_speed(setup.material.reference_density, 0.0);
+        let steps = setup.duration * 1.2 * speed * n / setup.length / case.scheme.courant();
+        let blocks = if setup.mirrored { 2.0 } else { 1.0 };
         6.0 * blocks * n * steps * case.scheme.price()
     }
 
     fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
-        let problem = Problem::of(case);
-        let (material, stairs) = problem.exact()?;
-        let size = LENGTH / f64::from(case.n);
-        let particles = particles(case.n, problem, material.reference_density);
-        let far = LENGTH + LAYERS as f64 * size;
+        let setup = self.setup(&case.variant)?;
+        let stairs = setup.waves()?;
+        let size = setup.length / f64::from(case.n);
+        let far = setup.length + LAYERS as f64 * size;
         let domain = strip::domain([-far, far], size, false);
         let mut settings = case.scheme.settings();
         settings.smoothing = SMOOTHING;
-        let mut run = Run::new(case, watch, domain, material, particles, settings)?;
-        run.advance(problem.duration)?;
-        Ok(measure(run, problem, &stairs))
+        let material = setup.material.clone();
+        let mut run = Run::new(case, watch, domain, material, particles(case.n, &setup), settings)?;
+        run.advance(setup.duration)?;
+        Ok(measure(run, &setup, &stairs))
+    }
+
+    fn parameters(&self) -> String {
+        self.user.as_ref().map_or(String::new(), |user| format!("{:?}", user.problem))
     }
 
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         let mut pictures = plots::convergences(&self.about(), outcomes);
-        for problem in &PROBLEMS {
-            let of_problem = outcomes.iter().copied().filter(|o| o.case.variant == problem.variant);
+        for variant in self.variants() {
+            let of_problem = outcomes.iter().copied().filter(|o| o.case.variant == variant);
             let of_problem: Vec<&Outcome> = of_problem.collect();
             if !of_problem.is_empty() {
-                pictures.push(profile_picture(problem, &of_problem)?);
+                let what = if self.user.is_some() { variant.to_owned() } else { format!("in {variant}") };
+                pictures.push(profile_picture(variant, &what, &self.setup(variant)?, &of_problem)?);
             }
         }
         Ok(pictures)
@@ -139,36 +178,36 @@ impl Suite for Piston {
 }
 
 /// Two blocks that meet, or a piston and a block at rest; the far ends are frozen.
-fn particles(n: u32, problem: &Problem, density: f64) -> Particles<Dim2> {
-    let size = LENGTH / f64::from(n);
-    let first = if problem.mirrored { -i64::from(n) - LAYERS } else { -LAYERS };
+fn particles(n: u32, setup: &Setup) -> Particles<Dim2> {
+    let (size, density) = (setup.length / f64::from(n), setup.material.reference_density);
+    let first = if setup.mirrored { -i64::from(n) - LAYERS } else { -LAYERS };
     strip::particles(first..i64::from(n) + LAYERS, size, density, |x, particle| {
-        let velocity = match (problem.mirrored, x < 0.0) {
-            (true, left) => problem.velocity * if left { 1.0 } else { -1.0 },
-            (false, piston) => problem.velocity * f64::from(piston),
+        let velocity = match (setup.mirrored, x < 0.0) {
+            (true, left) => setup.velocity * if left { 1.0 } else { -1.0 },
+            (false, piston) => setup.velocity * f64::from(piston),
         };
         particle.velocity = [velocity, 0.0].into();
-        if x.abs() > LENGTH {
+        if x.abs() > setup.length {
             particle.constraint = Constraint::Frozen;
-        } else if x < 0.0 && !problem.mirrored {
+        } else if x < 0.0 && !setup.mirrored {
             particle.constraint = Constraint::ImposedVelocity;
         }
     })
 }
 
 /// Place relative to matter at rest ahead of a piston that starts at 0 [m], and -σ_xx there [Pa]; right block only.
-fn stresses(run: &Run<'_, Dim2>, problem: &Problem) -> Vec<(f64, f64)> {
-    let shift = if problem.mirrored { problem.velocity * problem.duration } else { 0.0 };
+fn stresses(run: &Run<'_, Dim2>, setup: &Setup) -> Vec<(f64, f64)> {
+    let shift = if setup.mirrored { setup.velocity * setup.duration } else { 0.0 };
     let values = strip::values(run, |i| -run.simulation.stress(i)[0]).into_iter();
     values.filter(|(x, _)| *x > 0.0).map(|(x, stress)| (x + shift, stress)).collect()
 }
 
-fn measure(run: Run<'_, Dim2>, problem: &Problem, stairs: &Staircase) -> Outcome {
-    let time = problem.duration;
-    let stresses = stresses(&run, problem);
+fn measure(run: Run<'_, Dim2>, setup: &Setup, stairs: &Staircase) -> Outcome {
+    let time = setup.duration;
+    let stresses = stresses(&run, setup);
     let pairs = stresses.iter().map(|&(x, stress)| (1e-9 * stress, -1e-9 * stairs.sample(x / time).stress));
     let mut measurements = vec![Measurement::error_of(STRESS_L1, mean_absolute_difference(pairs))];
-    let (from, to) = (problem.velocity * time, stairs.waves().last().map_or(0.0, |w| w.wave_speed) * time);
+    let (from, to) = (setup.velocity * time, stairs.waves().last().map_or(0.0, |w| w.wave_speed) * time);
     let plateau = strip::mean_between(&stresses, from + 0.25 * (to - from), from + 0.75 * (to - from));
     let profile = column_means(stresses, strip::ROWS as usize);
     for (metric, wave) in [PRECURSOR_SHIFT, PLASTIC_SHIFT].into_iter().zip(stairs.waves()) {
@@ -182,19 +221,24 @@ fn measure(run: Run<'_, Dim2>, problem: &Problem, stairs: &Staircase) -> Outcome
     run.outcome(measurements, vec![Curve::new("stress", curve)], Vec::new())
 }
 
-fn profile_picture(problem: &Problem, outcomes: &[&Outcome]) -> Result<Picture, ValidateError> {
-    let (_, stairs) = problem.exact()?;
-    let exact: Vec<(f64, f64)> = stairs
-        .profile(problem.duration, LENGTH)
+fn profile_picture(
+    variant: &str,
+    what: &str,
+    setup: &Setup,
+    outcomes: &[&Outcome],
+) -> Result<Picture, ValidateError> {
+    let exact: Vec<(f64, f64)> = setup
+        .waves()?
+        .profile(setup.duration, setup.length)
         .into_iter()
         .map(|(x, sample)| (1e3 * x, -1e-9 * sample.stress))
         .collect();
-    let (variant, microseconds) = (problem.variant, 1e6 * problem.duration);
-    let title = format!("Piston in {variant}, u_p = {} m/s, t = {microseconds} µs", problem.velocity);
+    let (velocity, microseconds) = (Significant(setup.velocity), Significant(1e6 * setup.duration));
+    let title = format!("Piston {what}, u_p = {velocity:.3} m/s, t = {microseconds:.3} µs");
     let figure = Figure::new(title, Axis::new("x [mm]"), Axis::new("-σ_{xx} [GPa]"));
     Ok(Picture {
         name: format!("piston-{variant}"),
-        caption: format!("stress ahead of a piston in {variant}: precursor and plastic shock, exact dashed"),
+        caption: format!("stress ahead of the piston {what}: precursor and plastic shock, exact dashed"),
         drawing: Drawing::Plot(plots::profiles(figure, outcomes, "stress", ("exact", &exact))),
     })
 }
@@ -212,11 +256,12 @@ mod tests {
             (0..particles.len()).map(|i| particles.mass[i] * particles.velocity[0][i]).sum()
         };
         let size = LENGTH / 100.0;
-        let mirrored = particles(100, &COPPER, 8960.0);
+        let copper = Piston::OWN.setup("copper").expect("in the library");
+        let mirrored = particles(100, &copper);
         assert_eq!(mirrored.len(), 6 * 210);
         assert_eq!(count(&mirrored, Constraint::Frozen), 60);
         assert!(momentum(&mirrored).abs() < 1e-9 * 8960.0 * size * size * 200.0);
-        let block = particles(100, &Problem { mirrored: false, ..COPPER }, 8960.0);
+        let block = particles(100, &Setup { mirrored: false, ..copper });
         assert_eq!(count(&block, Constraint::ImposedVelocity), 30);
         assert!((momentum(&block) / (30.0 * 8960.0 * size * size * 200.0) - 1.0).abs() < 1e-12);
     }
@@ -224,12 +269,14 @@ mod tests {
     /// All problems have two waves that are apart by many particles, and neither reaches the far end.
     #[test]
     fn problems_are_two_wave_problems() {
-        for problem in &PROBLEMS {
-            let (_, stairs) = problem.exact().expect("solvable");
-            let [precursor, plastic] = stairs.waves() else { panic!("{}: {stairs:?}", problem.variant) };
-            let way = precursor.wave_speed * problem.duration;
-            assert!(way < 0.9 * LENGTH, "{}: {way}", problem.variant);
-            assert!(way - plastic.wave_speed * problem.duration > 0.05 * LENGTH, "{}", problem.variant);
+        for variant in Piston::OWN.variants() {
+            let setup = Piston::OWN.setup(variant).expect("in the library");
+            let stairs = setup.waves().expect("solvable");
+            let [precursor, plastic] = stairs.waves() else { panic!("{variant}: {stairs:?}") };
+            let way = setup.reach().expect("solvable");
+            assert!(way < 0.9 * LENGTH, "{variant}: {way}");
+            assert!(precursor.wave_speed > plastic.wave_speed);
+            assert!(way - plastic.wave_speed * setup.duration > 0.05 * LENGTH, "{variant}");
         }
     }
 }

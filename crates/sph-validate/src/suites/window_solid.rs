@@ -9,6 +9,9 @@
 //!
 //! Reference: exact, jump conditions of both waves ([`sph_materials::hugoniot`]). The window counts lengths of the
 //! undisturbed medium: the shock velocity is the mass flux through the front over its density.
+//!
+//! A user's window ([`Setup`]) holds any solid at any u_p beyond the elastic limit; the answer has no length, so that the
+//! size of a particle is 1 µm there, too.
 
 use std::time::Instant;
 
@@ -26,11 +29,12 @@ use crate::metric::{Measurement, Metric};
 use crate::outcome::{Curve, Outcome};
 use crate::plots;
 use crate::run::material;
+use crate::user::User;
 use crate::watch::Watch;
 
 const SIZE: f64 = 1e-6;
 /// Length of the medium that is fed [D].
-const FED: f64 = 2500.0;
+pub(crate) const FED: u32 = 2500;
 
 /// Shock velocity from the front, off the exact one.
 const FRONT: Metric = Metric::value("front_velocity_error", "%");
@@ -49,21 +53,88 @@ const AHEAD: Metric = Metric::value("stress_ahead", "GPa");
 const VARIANTS: [(&str, f64); 5] =
     [("50", 50.0), ("100", 100.0), ("200", 200.0), ("400", 400.0), ("800-overdriven", 800.0)];
 
-/// The suite.
-pub struct WindowSolid;
+/// What makes a problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The solid.
+    pub material: Material,
+    /// u_p [m/s].
+    pub velocity: f64,
+    /// Length of the medium that is fed, in particle sizes.
+    pub fed: u32,
+}
+
+/// The suite: copper, or a user's solid.
+pub struct WindowSolid {
+    /// What the user asks for.
+    pub user: Option<User<Setup>>,
+}
+
+impl WindowSolid {
+    /// The problems of the project.
+    pub const OWN: Self = Self { user: None };
+
+    fn setup(&self, case: &Case) -> Result<Setup, ValidateError> {
+        match &self.user {
+            Some(user) => Ok(user.problem.clone()),
+            None => Ok(Setup { material: material("porous-copper")?, velocity: velocity_of(case), fed: FED }),
+        }
+    }
+
+    fn picture(&self, outcomes: &[&Outcome]) -> Result<Picture, ValidateError> {
+        let Setup { material, velocity, .. } = self.setup(&outcomes[0].case)?;
+        let rest = material.reference_density;
+        // Around what the user asks for; the range of the project's own problems.
+        let ends = if self.user.is_some() { [0.5 * velocity, 1.5 * velocity] } else { [20.0, 850.0] };
+        let velocities = (0..=80).map(|k| ends[0] + (ends[1] - ends[0]) * f64::from(k) / 80.0);
+        let point = |u_p: f64| Some((u_p, Exact::new(&material, u_p).ok()?.velocity(rest)));
+        let exact: Vec<(f64, f64)> = velocities.filter_map(point).collect();
+        let title = match &self.user {
+            Some(user) => format!("Moving window, {}: shock velocity", user.name),
+            None => "Solid copper in the moving window: shock velocity".into(),
+        };
+        let mut figure = Figure::new(title, Axis::new("u_p [m/s]"), Axis::new("u_s [m/s]"))
+            .with(plots::line(Series::dashed, "exact", &exact).with_color(plots::BLACK));
+        for scheme in SchemeName::ALL {
+            let of_scheme = outcomes.iter().filter(|o| o.case.scheme == scheme);
+            let points: Vec<(f64, f64)> =
+                of_scheme.filter_map(|o| o.curve("velocity").first().copied()).collect();
+            if !points.is_empty() {
+                figure = figure.with(plots::line(Series::points, scheme.title(), &points));
+            }
+        }
+        Ok(Picture {
+            name: "window-solid".into(),
+            caption:
+                "velocity of the shock that the window follows, relative to the medium behind the precursor, \
+                      from the front"
+                    .into(),
+            drawing: Drawing::Plot(figure),
+        })
+    }
+}
 
 impl Suite for WindowSolid {
     fn about(&self) -> About {
         About {
             name: "window-solid",
-            title: "Solid copper in the moving window",
+            title: match self.user {
+                Some(_) => "Solid in the moving window",
+                None => "Solid copper in the moving window",
+            },
             resolution: "length of the box in particle sizes",
             reference: ReferenceKind::Analytic,
-            gates: include_str!("../../validation/window-solid/gates.ron"),
+            gates: match self.user {
+                Some(_) => "",
+                None => include_str!("../../validation/window-solid/gates.ron"),
+            },
         }
     }
 
     fn cases(&self, tier: Tier) -> Vec<Case> {
+        if let Some(user) = &self.user {
+            return user.cases("window-solid");
+        }
         let variants = match tier {
             Tier::Quick => &VARIANTS[2..3],
             Tier::Full => &VARIANTS[..],
@@ -83,56 +154,36 @@ impl Suite for WindowSolid {
     }
 
     fn work(&self, case: &Case) -> f64 {
-        let steps = FED * SIZE / 4200.0 * 4800.0 / SIZE / case.scheme.courant();
+        let fed = self.user.as_ref().map_or(FED, |user| user.problem.fed);
+        let steps = f64::from(fed) * 4800.0 / 4200.0 / case.scheme.courant();
         4.0 * f64::from(case.n) * steps * case.scheme.price()
     }
 
     fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
         let started = Instant::now();
-        let copper = material("porous-copper")?;
-        let velocity = velocity_of(case);
-        let exact = Exact::new(&copper, velocity)?;
+        let Setup { material, velocity, fed } = self.setup(case)?;
+        let exact = Exact::new(&material, velocity)?;
         let settings = WindowSettings {
             inlet: exact.inlet(),
             plateau: PlateauMargins { front: 20.0, outlet: 8.0 },
             ..WindowSettings::new(f64::from(case.n) * SIZE, velocity)
         };
         let fault = |source| ValidateError::Window { case: case.to_string(), source: Box::new(source) };
-        let sample = sample(copper.reference_density).map_err(fault)?;
+        let sample = sample(material.reference_density).map_err(fault)?;
         let mut window =
-            Window::new(sample, vec![copper.clone()], case.scheme.settings(), settings).map_err(fault)?;
-        let means = advance(case, &mut window, watch, FED * SIZE)?;
-        let measurements = exact.measure(&window, &means, copper.reference_density);
+            Window::new(sample, vec![material.clone()], case.scheme.settings(), settings).map_err(fault)?;
+        let means = advance(case, &mut window, watch, f64::from(fed) * SIZE)?;
+        let measurements = exact.measure(&window, &means, material.reference_density);
         let curves = vec![Curve::new("velocity", vec![(velocity, means.front_velocity(&window))])];
         Ok(outcome(case, &window, measurements, curves, Vec::new(), started))
     }
 
+    fn parameters(&self) -> String {
+        self.user.as_ref().map_or(String::new(), |user| format!("{:?}", user.problem))
+    }
+
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
-        let copper = material("porous-copper")?;
-        let rest = copper.reference_density;
-        let exact: Result<Vec<(f64, f64)>, ValidateError> = (20..=850)
-            .step_by(10)
-            .map(|u_p| Ok((f64::from(u_p), Exact::new(&copper, f64::from(u_p))?.velocity(rest))))
-            .collect();
-        let title = "Solid copper in the moving window: shock velocity";
-        let mut figure = Figure::new(title, Axis::new("u_p [m/s]"), Axis::new("u_s [m/s]"))
-            .with(plots::line(Series::dashed, "exact", &exact?).with_color(plots::BLACK));
-        for scheme in SchemeName::ALL {
-            let of_scheme = outcomes.iter().filter(|o| o.case.scheme == scheme);
-            let points: Vec<(f64, f64)> =
-                of_scheme.filter_map(|o| o.curve("velocity").first().copied()).collect();
-            if !points.is_empty() {
-                figure = figure.with(plots::line(Series::points, scheme.title(), &points));
-            }
-        }
-        Ok(vec![Picture {
-            name: "window-solid".into(),
-            caption:
-                "velocity of the shock that the window follows, relative to the medium behind the precursor, \
-                      from the front"
-                    .into(),
-            drawing: Drawing::Plot(figure),
-        }])
+        Ok(vec![self.picture(outcomes)?])
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Two stages, as for every case file of the house: [`schema`] is the file as written, `resolve` makes a checked problem
 //! in SI, or a list of all faults with their places. What the exact solution refuses (vacuum, overdriven shock, nothing
-//! that moves) is a fault of the problem, with the condition that it breaks.
+//! that moves, no plastic wave) is a fault of the problem, with the condition that it breaks.
 //!
 //! A user's problem has no gates: its figures are shown beside their references, with the observed orders.
 
@@ -27,6 +27,13 @@ pub struct User<P> {
     pub resolutions: Vec<u32>,
     /// The problem.
     pub problem: P,
+}
+
+impl User<()> {
+    /// The same with its problem.
+    fn with<P>(self, problem: P) -> User<P> {
+        User { name: self.name, schemes: self.schemes, resolutions: self.resolutions, problem }
+    }
 }
 
 impl<P> User<P> {

@@ -25,6 +25,14 @@ pub struct CaseSchema {
 pub enum ProblemSchema {
     /// Elastic-plastic Riemann problem.
     Riemann(RiemannSchema),
+    /// Piston that pushes into a solid: precursor and plastic shock.
+    Piston(PistonSchema),
+    /// Longitudinal sound wave: a pulse of velocity splits in two.
+    SoundWave(SoundWaveSchema),
+    /// Cylindrical shell that moves inwards until plastic work has stopped it.
+    Shell(ShellSchema),
+    /// Steady shock in a solid, in the moving window.
+    Window(WindowSchema),
 }
 
 /// Elastic-plastic Riemann problem.
@@ -41,6 +49,64 @@ pub struct RiemannSchema {
     pub length: Field<Length>,
     /// Time of the comparison.
     pub time: Field<Time>,
+}
+
+/// Piston: the plane in which two equal blocks meet.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PistonSchema {
+    /// The solid; with a yield strength.
+    pub material: Field<MaterialSchema>,
+    /// Velocity of the piston.
+    pub velocity: Field<Velocity>,
+    /// Length of a block.
+    pub length: Field<Length>,
+    /// Time of the comparison.
+    pub time: Field<Time>,
+}
+
+/// Sound wave: U_x(0) = amplitude exp(-2 x²/width²).
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SoundWaveSchema {
+    /// The solid.
+    pub material: Field<MaterialSchema>,
+    /// Greatest velocity at the start.
+    pub amplitude: Field<Velocity>,
+    /// Width of the pulse.
+    pub width: Field<Length>,
+    /// Period along x.
+    pub length: Field<Length>,
+    /// Way of the pulses until the comparison.
+    pub travel: Field<Length>,
+}
+
+/// Cylindrical shell.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ShellSchema {
+    /// The solid; with a yield strength.
+    pub material: Field<MaterialSchema>,
+    /// Inner radius R0.
+    pub inner_radius: Field<Length>,
+    /// Outer radius R1.
+    pub outer_radius: Field<Length>,
+    /// Velocity of the inner surface, inwards; or `stop_radius`.
+    pub velocity: Field<Velocity>,
+    /// Inner radius at which the shell would stop if it were rigid and plastic; or `velocity`.
+    pub stop_radius: Field<Length>,
+}
+
+/// Steady shock in the moving window.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WindowSchema {
+    /// The solid; with a yield strength.
+    pub material: Field<MaterialSchema>,
+    /// Velocity of the piston, u_p.
+    pub velocity: Field<Velocity>,
+    /// Length of the medium that is fed, in particle sizes.
+    pub fed: Field<Count>,
 }
 
 /// A state of uniaxial loading from the undisturbed solid.

@@ -5,8 +5,10 @@
 mod bench;
 mod docs;
 mod files;
+mod fuzz;
 mod health;
 mod process;
+mod soak;
 mod tidy;
 mod validate;
 
@@ -28,6 +30,10 @@ enum Task {
     Validate(validate::Arguments),
     /// Measure what a step costs on this machine, in one table, and count its instructions.
     Bench(bench::Arguments),
+    /// Kill runs at random moments, many times: they must end with the same bytes.
+    Soak(soak::Arguments),
+    /// Feed the readers of case files, measured data, pictures and checkpoints with what a fuzzer thinks of.
+    Fuzz(fuzz::Arguments),
     /// Hold the sources against the rules of the house: dependencies, module docs, paths, prints, sizes.
     Tidy,
     /// Look at what a release needs: licenses, packages; with --full a dry run, oldest dependencies, interfaces.
@@ -40,6 +46,8 @@ fn main() -> anyhow::Result<ExitCode> {
     match Arguments::parse().task {
         Task::Validate(arguments) => validate::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
+        Task::Soak(arguments) => soak::run(&arguments),
+        Task::Fuzz(arguments) => fuzz::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Health(arguments) => health::run(&arguments),
         Task::Docs => docs::run(),

@@ -79,6 +79,26 @@ impl Checker<'_> {
         None
     }
 
+    /// The number of the format that the file is written in; a file that names none is of the first.
+    ///
+    /// A newer one than `newest` is refused: it may say things that this program knows nothing of. What an older one
+    /// means is the caller's to know.
+    pub fn format(&self, field: &Field<Count>, newest: u64) -> Option<u64> {
+        let Field::Good(Count(format), span) = field else {
+            return matches!(field, Field::Absent).then_some(1);
+        };
+        if (1..=newest).contains(format) {
+            return Some(*format);
+        }
+        let message = format!("the file is of format {format}; this program reads formats up to {newest}");
+        let hint = match format {
+            0 => "the first format is 1, and may be left out",
+            _ => "a newer version of this program reads it",
+        };
+        self.refuse(span.clone(), message, hint);
+        None
+    }
+
     /// A choice, or the default.
     pub fn choice<T: Copy>(&self, field: &Field<T>, default: T) -> Option<T> {
         match field {

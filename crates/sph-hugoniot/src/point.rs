@@ -173,13 +173,22 @@ impl<'c> Point<'c> {
                 }
             };
             let Some(observation) = observation else { continue };
+            let stage = self.stage();
             let status = self.look(&observation);
+            if let Some(keeper) = keeper.as_mut().filter(|_| self.stage() != stage) {
+                keeper.make_due();
+            }
             self.write_moment(observation.swept, keeper.as_ref())?;
             control.progress(&self.way(&observation));
             if let Some(status) = status {
                 return Ok(status);
             }
         }
+    }
+
+    /// What ends with a state on disk, however short ago the last one was: start-up, each block, each trial of a search.
+    fn stage(&self) -> (usize, usize) {
+        (self.progress.profiles.len(), self.window.audit().len())
     }
 
     /// Writes the moment for ParaView, if the case asks for it and the point is kept on disk.

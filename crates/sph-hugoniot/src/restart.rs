@@ -32,6 +32,7 @@ pub struct Keeper {
     store: CheckpointStore,
     interval: Duration,
     last: Instant,
+    stage_ended: bool,
 }
 
 /// A state beside its columns.
@@ -62,7 +63,7 @@ impl Keeper {
         std::fs::create_dir_all(folder)
             .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
         let store = CheckpointStore::new(folder, "state");
-        Ok(Self { folder: folder.to_path_buf(), store, interval, last: Instant::now() })
+        Ok(Self { folder: folder.to_path_buf(), store, interval, last: Instant::now(), stage_ended: false })
     }
 
     /// Where the point is kept.
@@ -118,9 +119,14 @@ impl Keeper {
         self.forget_states()
     }
 
-    /// True when the last state is old enough for another.
+    /// True when the last state is old enough for another, or a stage of the point has ended since.
     pub fn is_due(&self) -> bool {
-        self.last.elapsed() >= self.interval
+        self.stage_ended || self.last.elapsed() >= self.interval
+    }
+
+    /// A stage of the point has ended: its state is kept before the next step.
+    pub fn make_due(&mut self) {
+        self.stage_ended = true;
     }
 
     /// Keeps the state of a point under way.
@@ -143,6 +149,7 @@ impl Keeper {
         columns.extend(earlier.iter().flat_map(Columns::data));
         self.store.save(&header, &columns)?;
         self.last = Instant::now();
+        self.stage_ended = false;
         Ok(())
     }
 

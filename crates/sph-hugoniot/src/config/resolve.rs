@@ -9,6 +9,11 @@ use super::case::*;
 use super::resolve_medium::Surroundings;
 use super::schema::*;
 
+/// The newest format of case files, and so far the only one. A change after which an old file would be read differently
+/// raises it; [`resolve()`] then translates the older formats, or refuses them with what to write instead. Further fields
+/// that may be left out change nothing of what old files mean, and raise no number.
+pub const CASE_FORMAT: u64 = 1;
+
 /// Most particles that a window may hold: about 100 GB, beyond any machine that this program is made for.
 pub const MAX_PARTICLES: f64 = 1e8;
 
@@ -20,6 +25,7 @@ pub const PARTICLE_VELOCITIES: (f64, f64) = (1.0, 3000.0);
 /// Files that the case names are looked for in `folder`.
 pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults) -> Option<Case> {
     let r = Resolver(Checker { faults });
+    let format = r.format(&schema.format, CASE_FORMAT);
     let name = schema.name.required("name", whole, faults).cloned();
     let materials = r.materials(schema, whole);
     let names: Option<Vec<String>> =
@@ -48,6 +54,7 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
         r.fronts_separate(&schema.points, material, medium.porosity, points);
     }
     let mut materials = materials?.into_iter();
+    format?;
     let case = Case {
         name: name?,
         material: materials.next()?,

@@ -15,6 +15,8 @@ use super::units::{Count, Density, Number, Pressure, Velocity, Viscosity};
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CaseSchema {
+    /// Number of the format.
+    pub format: Field<Count>,
     /// What it is called in reports.
     pub name: Field<String>,
     /// The solid.

@@ -9,7 +9,7 @@
 //! twice as long and twice as wide. [`Edges::Periodic`] takes the picture as it is, and it must then fit to itself across
 //! its edges ([`GrayImage::seam`]).
 
-use std::io::BufReader;
+use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,6 +20,9 @@ use super::layout::Fill;
 
 /// Most pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 22;
+
+/// Memory that the PNG decoder may take for itself: rows, palette, texts and profiles beside the pixels [bytes].
+pub const MAX_DECODER_BYTES: usize = 64 << 20;
 
 /// What happens at the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -49,16 +52,29 @@ impl GrayImage {
     pub fn read(path: &Path) -> Result<Self, String> {
         let shown = path.display();
         let file = std::fs::File::open(path).map_err(|e| format!("{shown}: cannot be opened: {e}"))?;
-        let mut decoder = png::Decoder::new(BufReader::new(file));
+        Self::decode(BufReader::new(file)).map_err(|reason| format!("{shown}: {reason}"))
+    }
+
+    /// Reads a picture in PNG format. Memory stays within [`MAX_DECODER_BYTES`] and eight bytes a pixel.
+    ///
+    /// # Errors
+    /// If it is no PNG, is damaged, or is too large.
+    pub fn decode(from: impl BufRead + Seek) -> Result<Self, String> {
+        let mut decoder = png::Decoder::new_with_limits(from, png::Limits { bytes: MAX_DECODER_BYTES });
         decoder.set_transformations(png::Transformations::normalize_to_color8());
-        let mut reader = decoder.read_info().map_err(|e| format!("{shown}: is no PNG picture: {e}"))?;
+        let mut reader = decoder.read_info().map_err(|e| format!("is no PNG picture: {e}"))?;
         let (width, height) = (reader.info().width, reader.info().height);
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(format!("{shown}: {width} × {height} pixels are too many: at most {MAX_PIXELS}"));
+            return Err(format!("{width} × {height} pixels are too many: at most {MAX_PIXELS}"));
         }
-        let size = reader.output_buffer_size().ok_or_else(|| format!("{shown}: is too large"))?;
+        // The decoder (png 0.18.1) would panic over such a palette.
+        let palette = reader.info().palette.as_deref().unwrap_or_default().len();
+        if palette % 3 != 0 {
+            return Err(format!("is damaged: a palette of {palette} bytes is no list of colors"));
+        }
+        let size = reader.output_buffer_size().ok_or("is too large")?;
         let mut bytes = vec![0; size];
-        let frame = reader.next_frame(&mut bytes).map_err(|e| format!("{shown}: is damaged: {e}"))?;
+        let frame = reader.next_frame(&mut bytes).map_err(|e| format!("is damaged: {e}"))?;
         let channels = frame.color_type.samples();
         let levels = bytes[..frame.buffer_size()].chunks_exact(channels).map(gray).collect();
         Ok(Self { width: width as usize, height: height as usize, levels })
@@ -350,6 +366,21 @@ mod tests {
         assert_eq!(part, disc((8.0, 8.0), 8.0, (16, 16)));
         assert!(image.crop(30, 0, 11, 5).is_none() && image.crop(0, 0, 0, 5).is_none());
         assert!(image.crop(usize::MAX, 0, 2, 5).is_none());
+    }
+
+    #[test]
+    fn a_palette_with_a_part_of_a_color_is_refused() {
+        let chunk = |name: &[u8; 4], data: &[u8]| {
+            let mut crc = flate2::Crc::new();
+            crc.update(&[name.as_slice(), data].concat());
+            let length = (data.len() as u32).to_be_bytes();
+            [&length, name.as_slice(), data, &crc.sum().to_be_bytes()].concat()
+        };
+        let head = [0, 0, 0, 8, 0, 0, 0, 8, 1, 3, 0, 0, 0];
+        let parts = [chunk(b"IHDR", &head), chunk(b"PLTE", &[9; 7]), chunk(b"IDAT", &[0x78, 0x9c])];
+        let file = [b"\x89PNG\r\n\x1a\n".as_slice(), &parts.concat()].concat();
+        let refusal = GrayImage::decode(std::io::Cursor::new(file)).unwrap_err();
+        assert!(refusal.contains("a palette of 7 bytes"), "{refusal}");
     }
 
     #[test]

@@ -6,10 +6,44 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 
 use crate::config::Case;
+use crate::report::machine;
 use crate::run::Earlier;
 
+/// Version of what a run keeps in its folder: `case.json`, and the headers of states and outcomes.
+///
+/// Whoever changes what these hold (`PointOutcome`, `PointProgress`, `WindowState`, `Case`) raises it: a run then refuses to
+/// go on with a folder of another version, in place of reading one thing as another.
+pub const FOLDER_FORMAT: u64 = 1;
+
+/// The resolved case as a folder keeps it, with the version of its form and of the program.
+///
+/// # Errors
+/// If the case cannot be written as JSON.
+pub fn case_json(case: &Case) -> Result<String> {
+    let mut value = serde_json::to_value(case)?;
+    value["format"] = FOLDER_FORMAT.into();
+    value["program"] = machine::VERSION.into();
+    Ok(serde_json::to_string_pretty(&value)?)
+}
+
+/// What stands against going on with a folder of another version.
+fn other_version(folder: &Path, before: &Value) -> Option<String> {
+    let format = before["format"].as_u64();
+    if format == Some(FOLDER_FORMAT) {
+        return None;
+    }
+    let of = format.map_or("no format that is named".to_owned(), |n| format!("format {n}"));
+    let program = before["program"].as_str().unwrap_or("an earlier program");
+    Some(format!(
+        "{}: the folder is of {of}, written by {program}; {} goes on with format {FOLDER_FORMAT} only; hint: finish it with \
+         the program that began it, or --out names another folder, or --replace throws the earlier results away",
+        folder.display(),
+        machine::VERSION
+    ))
+}
+
 /// Parts of a case that may differ when a run goes on: which points, and what is drawn of them.
-const FREE: [&str; 5] = ["points", "refinement", "data", "output", "name"];
+const FREE: [&str; 7] = ["points", "refinement", "data", "output", "name", "format", "program"];
 
 /// Makes the folder ready; the reason if the run must not start.
 ///
@@ -38,6 +72,9 @@ pub fn settle(folder: &Path, case: &Case, earlier: Earlier) -> Result<Option<Str
             let text = std::fs::read_to_string(&path)?;
             let before: Value = serde_json::from_str(&text)
                 .with_context(|| format!("{}: is not what a run writes", path.display()))?;
+            if let Some(refusal) = other_version(folder, &before) {
+                return Ok(Some(refusal));
+            }
             let changes = changes(&before, &serde_json::to_value(case)?);
             Ok((!changes.is_empty()).then(|| {
                 format!(
@@ -87,5 +124,17 @@ mod tests {
         let now = json!({"points": [50.0, 75.0], "medium": {"porosity": 1.4, "cell": 2e-5}});
         assert_eq!(changes(&before, &now), ["  medium.porosity: 1.35 -> 1.4"]);
         assert!(changes(&before, &before).is_empty());
+    }
+
+    #[test]
+    fn a_folder_of_another_version_is_refused_with_a_word() {
+        let said = |value: Value| other_version(Path::new("results/a"), &value);
+        assert_eq!(said(json!({"format": FOLDER_FORMAT})), None);
+        let newer = said(json!({"format": 99, "program": "hugoniot 9.9.9"})).unwrap();
+        assert!(
+            newer.contains("results/a: the folder is of format 99, written by hugoniot 9.9.9; "),
+            "{newer}"
+        );
+        assert!(said(json!({"name": "x"})).unwrap().contains("no format that is named"));
     }
 }

@@ -51,7 +51,7 @@ impl Report {
                 .with_context(|| format!("{}: the folder cannot be made", path.display()))?;
         }
         sph_io::write_atomic(folder.join("case.ron"), case_text.as_bytes())?;
-        sph_io::write_atomic(folder.join("case.json"), serde_json::to_string_pretty(case)?.as_bytes())?;
+        sph_io::write_atomic(folder.join("case.json"), earlier::case_json(case)?.as_bytes())?;
         Ok(Self { folder: folder.to_path_buf() })
     }
 

@@ -10,6 +10,8 @@ use crate::case::SchemeName;
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CaseSchema {
+    /// Number of the format.
+    pub format: Field<Count>,
     /// What it is called in reports and file names.
     pub name: Field<String>,
     /// The problem.

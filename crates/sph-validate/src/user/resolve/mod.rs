@@ -18,9 +18,13 @@ use crate::suites::sound_wave::SoundWave;
 use crate::suites::verny::Verny;
 use crate::suites::window_solid::WindowSolid;
 
+/// The newest format of these files.
+const CASE_FORMAT: u64 = 1;
+
 /// Turns what was written into a suite; `None` when a fault was noted, here or before.
 pub fn resolve(schema: &CaseSchema, whole: &Span, faults: &Faults) -> Option<Box<dyn Suite>> {
     let r = Resolver { checker: Checker { faults } };
+    r.checker.format(&schema.format, CASE_FORMAT);
     let name = r.name(&schema.name, whole);
     let schemes = r.schemes(&schema.schemes).unwrap_or_default();
     let problem = schema.problem.required("problem", whole, faults);

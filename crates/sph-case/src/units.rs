@@ -168,12 +168,14 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
     }
 }
 
-/// A value in the unit that reads best: 2e-5 m as `20 um`.
+/// A value in the unit that reads best: 2e-5 m as `20 um`, 1e-10 m as `0.1 nm`.
 pub fn show<K: Kind>(si: f64) -> String {
     let fits = |size: f64| {
         size.log10().round() as i64 % 3 == 0 && (1.0 - 1e-9..1e3 - 1e-6).contains(&(si.abs() / size))
     };
-    let best = K::UNITS.iter().find(|u| u.0.is_ascii() && fits(u.1)).unwrap_or(&K::UNITS[0]);
+    let smallest = K::UNITS.iter().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|u| si != 0.0 && si.abs() < u.1);
+    let fitting = K::UNITS.iter().find(|u| u.0.is_ascii() && fits(u.1));
+    let best = fitting.or(smallest).unwrap_or(&K::UNITS[0]);
     format!("{} {}", significant(si / best.1), best.0)
 }
 
@@ -284,6 +286,7 @@ mod tests {
     fn values_are_shown_in_the_unit_that_reads_best() {
         assert_eq!(show::<LengthKind>(2e-5), "20 um");
         assert_eq!(show::<LengthKind>(4.06e-6), "4.06 um");
+        assert_eq!(show::<LengthKind>(1e-10), "0.1 nm");
         assert_eq!(show::<LengthKind>(1e-3), "1 mm");
         assert_eq!(show::<PressureKind>(0.35e9), "350 MPa");
         assert_eq!(show::<VelocityKind>(-5.0), "-5 m/s");

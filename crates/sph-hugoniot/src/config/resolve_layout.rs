@@ -94,12 +94,18 @@ impl Resolver<'_> {
     ) -> Option<Vec<(f64, Fill)>> {
         let list = image.levels.required("levels", group, self.faults)?;
         let span = span_of(&image.levels);
-        let mut ranges: Vec<(f64, Fill)> = Vec::new();
-        for field in list {
+        let read = |field: &Field<LevelSchema>| {
             let level = field.get()?;
             let of = level.of.required("of", &span_of(field), self.faults).map(|_| ());
-            let up_to = self.count(&level.up_to, 255, 0, 255)?;
-            let fill = of.and_then(|()| self.fill(&level.of, Fill::Void, around))?;
+            let up_to = self.count(&level.up_to, 255, 0, 255);
+            let fill = of.and_then(|()| self.fill(&level.of, Fill::Void, around));
+            up_to.zip(fill)
+        };
+        // All are read before any is left out, so that the faults of all are told.
+        let read: Vec<Option<(usize, Fill)>> = list.iter().map(read).collect();
+        let mut ranges: Vec<(f64, Fill)> = Vec::new();
+        for (field, read) in list.iter().zip(read) {
+            let (level, (up_to, fill)) = (field.get()?, read?);
             if ranges.last().is_some_and(|last| last.0 >= up_to as f64) {
                 let message = format!("{up_to} is not above the level before");
                 self.refuse(span_of(&level.up_to), message, "list levels from black (0) to white (255)");
@@ -276,13 +282,13 @@ impl Draft<'_> {
         let gap = r.needed(&random.gap, "gap", span, 0.0, self.cell.max_element());
         let seed = r.count(&random.seed, 1, 0, u64::MAX);
         let angle = match &random.angle {
-            Field::Bad(_) => return None,
-            Field::Absent | Field::Good(AngleSchema::Random, _) => None,
+            Field::Bad(_) => None,
+            Field::Absent | Field::Good(AngleSchema::Random, _) => Some(None),
             Field::Good(AngleSchema::Degrees(degrees), _) => {
-                Some(r.number(degrees, 0.0, -360.0, 360.0)?.to_radians())
+                r.number(degrees, 0.0, -360.0, 360.0).map(|degrees| Some(degrees.to_radians()))
             }
         };
-        let (sizes, gap) = (sizes?, gap?);
+        let (sizes, gap, angle) = (sizes?, gap?, angle?);
         if gap < self.size {
             let message = format!("a gap of {} is narrower than a particle", show::<LengthKind>(gap));
             let least = show::<LengthKind>(self.size);

@@ -37,11 +37,11 @@ pub(super) struct Surroundings<'s> {
 impl Resolver<'_> {
     pub(super) fn medium(&self, m: &MediumSchema, group: &Span, around: Surroundings<'_>) -> Option<Medium> {
         let particle_size = self.needed(&m.particle_size, "particle_size", group, 1e-10, 1.0);
-        let packing = match self.choice(&m.packing, PackingSchema::Square)? {
+        let packing = self.choice(&m.packing, PackingSchema::Square).map(|packing| match packing {
             PackingSchema::Square => Packing::Square,
             PackingSchema::Hexagonal => Packing::Hexagonal,
             PackingSchema::Relaxed => Packing::Relaxed,
-        };
+        });
         let porosity = self.number(&m.porosity, 1.0, 1.0, LIMIT);
         if matches!((&m.shapes, &m.layers, &m.image), (Field::Absent, Field::Absent, Field::Absent)) {
             m.pores.required("pores", group, self.faults);
@@ -51,8 +51,9 @@ impl Resolver<'_> {
         let (cell, size) = (cell?, particle_size?);
         let good = self.whole_particles(cell, size, m);
         let layout = Layout { base: base?, painted: Vec::new() };
-        let draft = Draft { m, cell, size, good, around };
-        draft.finish(self, layout, porosity?, packing)
+        // What fills the cell is looked at even if the porosity is wrong: its faults are told too.
+        let draft = Draft { m, cell, size, good: good && porosity.is_some(), around };
+        draft.finish(self, layout, porosity, packing.unwrap_or(Packing::Square)).filter(|_| packing.is_some())
     }
 
     /// Length and height of the cell; hexagonal pores and pictures have their own.
@@ -125,9 +126,10 @@ impl Resolver<'_> {
         let n = edge / size;
         if !(ALONG_EDGE.0..=ALONG_EDGE.1).contains(&n) {
             let message = format!(
-                "{} gives {} particles along the cell's edge",
+                "{} gives {} particles along the cell's edge of {}",
                 show::<LengthKind>(size),
-                significant(n)
+                significant(n.floor()),
+                show::<LengthKind>(edge)
             );
             self.refuse(span.clone(), message, &format!("from {} to {}", ALONG_EDGE.0, ALONG_EDGE.1));
             return false;
@@ -191,7 +193,15 @@ impl Resolver<'_> {
             return Some(());
         }
         let message = format!("pores of radius {} touch or overlap", show::<LengthKind>(radius));
-        let hint = format!("at most {}: half the distance less one particle", show::<LengthKind>(largest));
+        let share = pores.count() as f64 * PI * largest * largest / (cell.x * cell.y);
+        let porosity = significant((1e3 / (1.0 - share)).floor() / 1e3);
+        let most = show::<LengthKind>(largest);
+        let hint = match largest > 0.0 {
+            true => {
+                format!("at most {most}, half the distance less one particle; porosity at most {porosity}")
+            }
+            false => "finer particles, or a larger cell".into(),
+        };
         self.refuse(span.clone(), message, &hint);
         None
     }
@@ -234,7 +244,7 @@ impl Draft<'_> {
         &self,
         r: &Resolver<'_>,
         mut layout: Layout,
-        porosity: f64,
+        porosity: Option<f64>,
         packing: Packing,
     ) -> Option<Medium> {
         let m = self.m;
@@ -251,6 +261,7 @@ impl Draft<'_> {
                 return self.random_pores(r, random, layout, &standing, porosity, packing);
             }
         };
+        let porosity = porosity?;
         let mut radius = 0.0;
         if let Some(pore) = lattice {
             let place = LatticePlace { pores, cell: self.cell, size: self.size, radius: &pore.radius };
@@ -297,16 +308,14 @@ impl Draft<'_> {
         random: &RandomSchema,
         mut layout: Layout,
         standing: &[Shape],
-        porosity: f64,
+        porosity: Option<f64>,
         packing: Packing,
     ) -> Option<Medium> {
         let span = span_of(&self.m.pores);
         let has_voids = layout.has(Fill::Void);
-        if !self.good {
-            return None;
-        }
-        let there = if has_voids { layout.share(Fill::Void, self.cell) } else { 0.0 };
-        let wanted = Amount::Share((1.0 - 1.0 / porosity - there).max(0.0));
+        let there = if has_voids && self.good { layout.share(Fill::Void, self.cell) } else { 0.0 };
+        let share = porosity.map_or(0.0, |porosity| 1.0 - 1.0 / porosity);
+        let wanted = Amount::Share((share - there).max(0.0));
         let by_porosity = matches!(random.count, Field::Absent) && !is_listed(random);
         if by_porosity && matches!(self.m.porosity, Field::Absent) {
             r.refuse(
@@ -319,8 +328,16 @@ impl Draft<'_> {
         let shapes = self.place_at_random(r, random, by_porosity.then_some(wanted), standing, &span)?;
         shapes.into_iter().for_each(|shape| layout.paint(shape, Fill::Void));
         let exact = by_porosity && !has_voids;
+        let porosity = porosity?;
         let porosity = if exact { porosity } else { self.porosity_of(r, &layout, porosity)? };
         Some(self.medium(layout, Pores::Placed, 0.0, porosity, packing))
+    }
+
+    /// Where the voids are written: the porosity, or what makes them.
+    fn voids_span(&self) -> Span {
+        let m = self.m;
+        let spans = [m.porosity.span(), m.pores.span(), m.image.span(), m.shapes.span(), m.layers.span()];
+        spans.into_iter().flatten().next().unwrap_or_else(|| span_of(&m.particle_size))
     }
 
     /// Porosity of a layout; one that is given must be near it: no boundary moves by more than a particle or two pixels.
@@ -330,10 +347,16 @@ impl Draft<'_> {
         }
         let share = layout.share(Fill::Void, self.cell);
         let found = 1.0 / (1.0 - share);
-        let span = self.m.porosity.span().unwrap_or_else(|| span_of(&self.m.pores));
+        let span = self.voids_span();
         if !(1.0..=LIMIT).contains(&found) {
             let message = format!("voids take {} % of the cell", significant((share * 1e4).round() / 100.0));
-            r.refuse(span, message, &format!("porosity up to {LIMIT}: smaller voids"));
+            let hint = match &layout.base {
+                Base::Image(_) => {
+                    format!("porosity up to {LIMIT}: other gray levels for the void, see `levels`")
+                }
+                Base::Uniform(_) => format!("porosity up to {LIMIT}: smaller voids"),
+            };
+            r.refuse(span, message, &hint);
             return None;
         }
         if matches!(self.m.porosity, Field::Absent) {

@@ -8,6 +8,9 @@ const SAME_SHELL: f64 = 1e-6;
 /// Shells this far around the cut, in D, may be exchanged to meet the number.
 const EXCHANGE: f64 = 0.5;
 
+/// Whole shells are kept where they miss the porosity by no more than this part.
+const WHOLE_SHELLS: f64 = 0.003;
+
 /// A shell: distance and points.
 type Shell = (f64, Vec<usize>);
 
@@ -17,6 +20,18 @@ struct Choice {
     miss: f64,
     end: usize,
     exchanged: Option<usize>,
+}
+
+/// Marks the points of a lattice that become void: `wanted` of the least distance [m], in whole shells where they meet the
+/// porosity nearly enough. `size` is D [m].
+pub(super) fn voids(distance: &[f64], wanted: f64, size: f64) -> Vec<bool> {
+    let mut removed = nearest_points(distance, wanted, size);
+    let all = distance.len() as f64;
+    let left = all - removed.iter().filter(|gone| **gone).count() as f64;
+    if (left / (all - wanted) - 1.0).abs() > WHOLE_SHELLS {
+        complete(&mut removed, distance, wanted);
+    }
+    removed
 }
 
 /// Marks `wanted` points of the least distance [m]; those at an infinite distance are never taken. `size` is D [m].
@@ -34,7 +49,7 @@ pub(super) fn nearest_points(distance: &[f64], wanted: f64, size: f64) -> Vec<bo
 
 /// Meets the number more nearly than whole shells do: single points next to the cut are taken or given back, each with its
 /// mirror image through the middle of the lattice (point i and N - 1 - i), so that pores stay alike.
-pub(super) fn complete(taken: &mut [bool], distance: &[f64], wanted: f64) {
+fn complete(taken: &mut [bool], distance: &[f64], wanted: f64) {
     let missing = wanted - taken.iter().filter(|t| **t).count() as f64;
     let take = missing > 0.0;
     let last = taken.len() - 1;

@@ -205,6 +205,9 @@ impl ImageLayout {
     /// Signed distance to a filling at a point [m], negative inside.
     pub fn level(&self, fill: Fill, point: DVec2) -> f64 {
         let Some((_, distances)) = self.distances.iter().find(|d| d.0 == fill) else { return f64::INFINITY };
+        if self.distances.len() == 1 {
+            return f64::NEG_INFINITY;
+        }
         let (width, height) = self.pixels;
         // Rows are counted from above.
         let u = point.x / self.pixel_size - 0.5;

@@ -69,6 +69,11 @@ impl Layout {
             Base::Image(image) => image.level(fill, point),
         };
         for painted in &self.painted {
+            // What is too far to change the level is most of the shapes, and of the work.
+            let least = painted.shape.least_distance(point, cell);
+            if least > 0.0 && if painted.fill == fill { least >= level } else { -least <= level } {
+                continue;
+            }
             let distance = painted.shape.distance(point, cell);
             level = if painted.fill == fill { level.min(distance) } else { level.max(-distance) };
         }

@@ -11,6 +11,7 @@ use super::Sample;
 use super::layout::{Base, Fill, Layout};
 use super::shape::Shape;
 use crate::config::case::Medium;
+use crate::config::units::{LengthKind, show};
 
 /// A gap or a pore below this many particle sizes is not resolved.
 pub const RESOLVED: f64 = 4.0;
@@ -32,7 +33,8 @@ pub struct Features {
 /// Measures the voids of a medium.
 pub fn features(medium: &Medium) -> Features {
     let (cell, size) = (medium.cell_size(), medium.particle_size);
-    let found = round_pores(&medium.layout).map_or_else(|| on_a_grid(medium), |pores| exactly(&pores, cell));
+    let round = round_pores(&medium.layout).map(|pores| exactly(&pores, cell)).filter(|found| found.1 >= 0.0);
+    let found = round.unwrap_or_else(|| on_a_grid(medium));
     let in_sizes = |length: f64| length.is_finite().then_some(length / size);
     Features { pores: found.0, smallest_gap: in_sizes(found.1), smallest_pore: in_sizes(found.2) }
 }
@@ -49,6 +51,8 @@ pub fn warnings(medium: &Medium, sample: &Sample, features: &Features) -> Vec<St
     };
     narrow("smallest gap between pores", features.smallest_gap);
     narrow("smallest pore", features.smallest_pore);
+    list.extend(overlaps(medium));
+    list.extend(levels_without_pixels(medium));
     let missed = sample.porosity - medium.porosity;
     if missed.abs() > 0.01 * medium.porosity {
         list.push(format!(
@@ -68,6 +72,35 @@ pub fn warnings(medium: &Medium, sample: &Sample, features: &Features) -> Vec<St
             .map(|(k, _)| format!("material {} of the case has none of the {particles} particles", k + 1)),
     );
     list
+}
+
+/// Round pores that overlap are one void: that may be meant, or a slip.
+fn overlaps(medium: &Medium) -> Option<String> {
+    let (pores, cell) = (round_pores(&medium.layout)?, medium.cell_size());
+    let pairs = (0..pores.len()).flat_map(|k| (0..k).map(move |i| (i, k)));
+    let (a, b) = pairs.clone().find(|&(i, k)| pores[i].gap(&pores[k], cell) < 0.0)?;
+    let count = pairs.filter(|&(i, k)| pores[i].gap(&pores[k], cell) < 0.0).count();
+    let at = |k: usize| {
+        let center = pores[k].bounds().0;
+        format!("({}, {})", show::<LengthKind>(center.x), show::<LengthKind>(center.y))
+    };
+    Some(format!(
+        "{count} pair(s) of pores overlap and are one void each, the first at {} and {}; move them apart if that is not meant",
+        at(a),
+        at(b)
+    ))
+}
+
+/// What gray levels stand for that no pixel of the picture has.
+fn levels_without_pixels(medium: &Medium) -> Option<String> {
+    let Base::Image(image) = &medium.layout.base else { return None };
+    let found = image.fills();
+    let (from, range) = image.ranges.iter().enumerate().find(|(_, range)| !found.contains(&range.1))?;
+    let lowest = from.checked_sub(1).map_or(0.0, |before| image.ranges[before].0 + 1.0);
+    Some(format!(
+        "no pixel of {} has a gray level from {lowest} to {}, which stands for {:?}; change `levels` if that is not meant",
+        image.file, range.0, range.1
+    ))
 }
 
 /// The pores if all voids are circles or ellipses in solid, over which nothing is painted.

@@ -22,6 +22,7 @@ pub mod picture;
 pub mod placement;
 pub mod relax;
 pub mod shape;
+pub mod spheres;
 
 use glam::DVec2;
 use sph_core::{Dim2, Particle};
@@ -32,9 +33,6 @@ use crate::config::Case;
 use crate::config::case::{Medium, Packing};
 use layout::Fill;
 use relax::Uniformity;
-
-/// Whole shells are kept where they miss the porosity by no more than this part.
-const WHOLE_SHELLS: f64 = 0.003;
 
 /// One period of the medium.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,11 +74,7 @@ pub fn build(medium: &Medium, densities: &[f64]) -> Sample {
     let mut lattice = lattice::points(medium);
     let distance = distances_to_voids(medium, &lattice);
     let wanted = lattice.len() as f64 * (1.0 - 1.0 / medium.porosity);
-    let mut removed = cut::nearest_points(&distance, wanted, medium.particle_size);
-    let left = lattice.len() as f64 - removed.iter().filter(|gone| **gone).count() as f64;
-    if (left / (lattice.len() as f64 - wanted) - 1.0).abs() > WHOLE_SHELLS {
-        cut::complete(&mut removed, &distance, wanted);
-    }
+    let removed = cut::voids(&distance, wanted, medium.particle_size);
     let fills = deal(medium, &lattice, &removed);
     let uniformity = (medium.packing == Packing::Relaxed).then(|| relax::relax(medium, &mut lattice, &fills));
     let volume = volume_of_a_point(medium, lattice.len());

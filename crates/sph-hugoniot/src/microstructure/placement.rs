@@ -15,9 +15,9 @@ use serde::Serialize;
 use super::shape::Shape;
 
 /// Places that are tried for one shape.
-const TRIES: usize = 3000;
+pub(super) const TRIES: usize = 3000;
 /// Times that all are placed anew.
-const ROUNDS: usize = 12;
+pub(super) const ROUNDS: usize = 12;
 /// Most shapes that are placed.
 pub const MOST: usize = 5000;
 
@@ -71,15 +71,23 @@ pub struct Request {
 }
 
 /// Why shapes could not be placed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// More than [`MOST`] would be needed.
+    #[error("{0} shapes would be needed; hint: at most {MOST}")]
     TooMany(f64),
     /// The part of the cell cannot be met: one shape alone takes this part [-].
+    #[error(
+        "one shape takes {0} of the cell, so that no whole number of them meets the share; hint: smaller ones, or a count"
+    )]
     TooLarge(f64),
     /// A shape with its gap is longer than the cell: its length [m].
+    #[error("the largest is {0} m long with its gap; hint: smaller ones, or a larger cell")]
     TooLong(f64),
     /// They do not fit.
+    #[error(
+        "only {placed} of {wanted} found a place, the cell is full at a share of {share}; hint: a narrower gap, a lower porosity"
+    )]
     Full {
         /// Most that were placed.
         placed: usize,
@@ -95,8 +103,8 @@ pub enum Refusal {
 /// # Errors
 /// [`Refusal`].
 pub fn place(request: &Request, cell: DVec2, standing: &[Shape]) -> Result<Vec<Shape>, Refusal> {
-    let mut random = Random(Pcg64::seed_from_u64(request.seed));
-    let mut radii = radii(request, cell, &mut random)?;
+    let mut random = Random::new(request.seed);
+    let mut radii = radii(&request.sizes, request.amount, Round::Disc, cell.x * cell.y, &mut random)?;
     radii.sort_by(|a, b| b.total_cmp(a));
     let axes: Vec<DVec2> = radii.iter().map(|r| semi_axes(*r, request.aspect)).collect();
     let longest = axes.first().map_or(0.0, |a| 2.0 * a.x + request.gap);
@@ -147,7 +155,8 @@ fn place_all(
     placed
 }
 
-/// True if two shapes keep their gap. Far ones are told by the circles around them.
+/// True if two shapes keep their gap. Far ones are told by the circles around them, ellipses that overlap by the circles
+/// within them.
 fn is_clear(a: &Shape, b: &Shape, gap: f64, cell: DVec2) -> bool {
     if let Shape::Circle { .. } | Shape::Ellipse { .. } = b {
         let ((p, half_a), (q, half_b)) = (a.bounds(), b.bounds());
@@ -157,39 +166,74 @@ fn is_clear(a: &Shape, b: &Shape, gap: f64, cell: DVec2) -> bool {
         if nearest.length() > outer_a + outer_b + gap {
             return true;
         }
+        let ellipses = matches!((a, b), (Shape::Ellipse { .. }, Shape::Ellipse { .. }));
+        if ellipses && nearest.length() < 0.5 * (a.width() + b.width()) + gap {
+            return false;
+        }
     }
-    a.gap(b, cell) >= gap
+    a.keeps_gap(b, gap, cell)
 }
 
-/// Radii [m], in the order in which they are drawn.
-fn radii(request: &Request, cell: DVec2, random: &mut Random) -> Result<Vec<f64>, Refusal> {
-    let area = cell.x * cell.y;
-    let disc = |r: f64| std::f64::consts::PI * r * r;
-    if let Sizes::Listed(radii) = &request.sizes {
+/// How large something round is, in the plane or in space.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Round {
+    /// A disc: area [m²].
+    Disc,
+    /// A ball: volume [m³].
+    Ball,
+}
+
+impl Round {
+    /// Area [m²] or volume [m³] with a radius [m].
+    pub(super) fn measure(self, radius: f64) -> f64 {
+        match self {
+            Self::Disc => std::f64::consts::PI * radius * radius,
+            Self::Ball => 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius,
+        }
+    }
+
+    /// What lengths are to be multiplied by for a measure that is multiplied by `ratio`.
+    fn scale(self, ratio: f64) -> f64 {
+        match self {
+            Self::Disc => ratio.sqrt(),
+            Self::Ball => libm::cbrt(ratio),
+        }
+    }
+}
+
+/// Radii [m], in the order in which they are drawn, for a cell of an area [m²] or volume [m³].
+pub(super) fn radii(
+    sizes: &Sizes,
+    amount: Amount,
+    round: Round,
+    cell: f64,
+    random: &mut Random,
+) -> Result<Vec<f64>, Refusal> {
+    if let Sizes::Listed(radii) = sizes {
         return Ok(radii.clone());
     }
-    let share = match request.amount {
-        Amount::Count(count) => return Ok((0..count).map(|_| random.radius(&request.sizes)).collect()),
+    let share = match amount {
+        Amount::Count(count) => return Ok((0..count).map(|_| random.radius(sizes)).collect()),
         Amount::Share(share) => share,
     };
-    let wanted = share * area;
-    let middle = request.sizes.middle();
-    if wanted / disc(middle) > MOST as f64 {
-        return Err(Refusal::TooMany((wanted / disc(middle)).ceil()));
+    let wanted = share * cell;
+    let middle = round.measure(sizes.middle());
+    if wanted / middle > MOST as f64 {
+        return Err(Refusal::TooMany((wanted / middle).ceil()));
     }
     let (mut radii, mut sum) = (Vec::new(), 0.0);
     while radii.len() < 2 * MOST {
-        let next = random.radius(&request.sizes);
+        let next = random.radius(sizes);
         // The one that comes nearest: with or without the last.
-        if sum + disc(next) - wanted > wanted - sum {
+        if sum + round.measure(next) - wanted > wanted - sum {
             break;
         }
         radii.push(next);
-        sum += disc(next);
+        sum += round.measure(next);
     }
-    let scale = (wanted / sum).sqrt();
+    let scale = round.scale(wanted / sum);
     if radii.is_empty() || !(0.8..=1.25).contains(&scale) {
-        return Err(Refusal::TooLarge(disc(middle) / area));
+        return Err(Refusal::TooLarge(middle / cell));
     }
     Ok(radii.iter().map(|r| r * scale).collect())
 }
@@ -207,11 +251,15 @@ impl Sizes {
 }
 
 /// Random numbers that are the same everywhere.
-struct Random(Pcg64);
+pub(super) struct Random(Pcg64);
 
 impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(Pcg64::seed_from_u64(seed))
+    }
+
     /// In [0, 1).
-    fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
@@ -275,7 +323,7 @@ mod tests {
 
     #[test]
     fn sizes_follow_their_distribution() {
-        let mut random = Random(Pcg64::seed_from_u64(1));
+        let mut random = Random::new(1);
         let mut draw = |sizes: &Sizes| (0..20_000).map(|_| random.radius(sizes)).collect::<Vec<_>>();
         let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
         let deviation =
@@ -290,7 +338,7 @@ mod tests {
 
     #[test]
     fn a_seed_gives_these_numbers_on_every_machine() {
-        let mut random = Random(Pcg64::seed_from_u64(42));
+        let mut random = Random::new(42);
         let bits = [random.uniform(), random.normal(), random.uniform()].map(f64::to_bits);
         assert_eq!(bits, SEED_42);
     }

@@ -5,7 +5,7 @@
 //! Nothing here depends on the platform's mathematics library: the same numbers on every machine.
 //!
 //! Ellipse: the nearest point x of x²/a² + y²/b² = 1 to p has x_k = a_k² p_k/(t + a_k²) with the largest root t of
-//! (a p_x/(t + a²))² + (b p_y/(t + b²))² = 1; found by bisection (D. Eberly, Distance from a Point to an Ellipse, 2013).
+//! (a p_x/(t + a²))² + (b p_y/(t + b²))² = 1 (D. Eberly, Distance from a Point to an Ellipse, 2013).
 
 use glam::DVec2;
 use serde::Serialize;
@@ -101,6 +101,17 @@ impl Shape {
         }
     }
 
+    /// No point of the shape or its images is nearer than this [m]: the distance to the boxes around them.
+    pub fn least_distance(&self, point: DVec2, cell: DVec2) -> f64 {
+        let (middle, half) = self.bounds();
+        let offset = point - middle;
+        let nearest = (offset - cell * (offset / cell).round()).abs();
+        match self {
+            Self::Layer { .. } => (nearest.x - half.x).max(0.0),
+            _ => length((nearest - half).max(DVec2::ZERO)),
+        }
+    }
+
     /// Signed distance of a point [m] to the shape and its images in a cell of this size [m].
     pub fn distance(&self, point: DVec2, cell: DVec2) -> f64 {
         let (middle, half) = self.bounds();
@@ -159,6 +170,16 @@ impl Shape {
         }
     }
 
+    /// True if the gap to another shape and its images is no narrower than this [m].
+    pub fn keeps_gap(&self, other: &Self, gap: f64, cell: DVec2) -> bool {
+        if matches!(self, Self::Circle { .. }) || matches!(other, Self::Circle { .. }) {
+            return self.gap(other, cell) >= gap;
+        }
+        // As in `gap`, but the first point that is too near decides.
+        let clear = |a: &Self, b: &Self| a.outline().iter().all(|&p| b.distance(p, cell) >= gap);
+        clear(self, other) && clear(other, self)
+    }
+
     /// Width of the gap to another shape and its images [m]; negative where they overlap.
     pub fn gap(&self, other: &Self, cell: DVec2) -> f64 {
         match (self, other) {
@@ -211,7 +232,7 @@ fn ellipse_distance(point: DVec2, semi_axes: DVec2) -> f64 {
     let inside = scaled.dot(scaled) < 1.0;
     let foot = if y.y > 0.0 {
         let ratio = (e.x / e.y) * (e.x / e.y);
-        let t = ellipse_root(ratio, scaled, inside);
+        let t = ellipse_root(ratio, scaled);
         DVec2::new(ratio * y.x / (t + ratio), y.y / (t + 1.0))
     } else {
         // On the long axis: near the middle the nearest point is off the axis.
@@ -221,20 +242,21 @@ fn ellipse_distance(point: DVec2, semi_axes: DVec2) -> f64 {
     if inside { -length(foot - y) } else { length(foot - y) }
 }
 
-/// Root of (r z_x/(t + r))² + (z_y/(t + 1))² = 1 beyond the poles.
-fn ellipse_root(ratio: f64, z: DVec2, inside: bool) -> f64 {
+/// Root of (r z_x/(t + r))² + (z_y/(t + 1))² = 1 beyond the poles. The left side falls and is convex there, so that
+/// Newton's steps from the left rise to the root and never pass it.
+fn ellipse_root(ratio: f64, z: DVec2) -> f64 {
     let n = ratio * z.x;
-    let mut low = z.y - 1.0;
-    let mut high = if inside { 0.0 } else { (n * n + z.y * z.y).sqrt() - 1.0 };
-    for _ in 0..80 {
-        let t = 0.5 * (low + high);
-        if t <= low || t >= high {
+    let mut t = z.y - 1.0;
+    for _ in 0..200 {
+        let (a, b) = (n / (t + ratio), z.y / (t + 1.0));
+        let slope = 2.0 * (a * a / (t + ratio) + b * b / (t + 1.0));
+        let next = t + (a * a + b * b - 1.0) / slope;
+        if next <= t || next.is_nan() {
             break;
         }
-        let (a, b) = (n / (t + ratio), z.y / (t + 1.0));
-        if a * a + b * b > 1.0 { low = t } else { high = t }
+        t = next;
     }
-    0.5 * (low + high)
+    t
 }
 
 fn polygon_distance(point: DVec2, corners: &[DVec2]) -> f64 {

@@ -133,3 +133,24 @@ fn a_relaxed_packing_keeps_mass_and_follows_the_pores() {
     });
     assert!(nearest.fold(f64::INFINITY, f64::min) > 0.7 * 0.5e-6);
 }
+
+#[test]
+fn pores_that_overlap_are_one_void_and_that_is_told() {
+    let circles = "cell: \"20 um\", particle_size: \"1 um\", shapes: [\
+        Circle(center: (\"8 um\", \"10 um\"), radius: \"4 um\"), Circle(center: (\"13 um\", \"10 um\"), radius: \"4 um\")]";
+    let told = |medium: &str| {
+        let case = read(COPPER, medium);
+        let features = measure::features(&case.medium);
+        (features, measure::warnings(&case.medium, &sample(&case), &features))
+    };
+    let (features, warnings) = told(circles);
+    assert_eq!(features.pores, 1);
+    // From the right end of one to the left end of its image: 20 - 13 µm.
+    assert!((features.smallest_gap.unwrap() - 7.0).abs() < 0.3, "{features:?}");
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("overlap") && warnings[0].contains("(13 um, 10 um)"),
+        "{warnings:?}"
+    );
+    let (features, warnings) = told(&circles.replace("13 um", "17 um"));
+    assert!(features.pores == 2 && warnings.iter().all(|w| !w.contains("overlap")), "{warnings:?}");
+}

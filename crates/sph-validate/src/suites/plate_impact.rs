@@ -4,9 +4,12 @@
 //! free, θ = 0.5. Copper: Mie-Grüneisen, Y = 0.35 GPa, without tensile failure: the releases from both faces meet and
 //! pull, and the tension is carried. 3.6 µs: precursor, plastic shock, pull-back and first ringing at the free face.
 //!
-//! Measured at the outermost column of the target, over time: the mean of |u - reference|; the times at which it passes
+//! Measured at the outermost column of the target, over time: the mean of |u - reference| until 2.9 µs, and of the rest; the times at which it passes
 //! half of the way to the precursor's and to the full velocity; the mean velocity of the plateau (1.75 to 2.05 µs, in
 //! impact of equal plates near the velocity of the flyer). The reference is read at the same matter, D/2 below the face.
+//!
+//! The rest of the history is apart since a lattice that is pulled with 3 GPa tears, the sooner the finer it is (instability in
+//! tension; the case leaves failure out on purpose): what tears in the spall plane from 2.2 µs on reaches the face at 2.95 µs.
 //!
 //! Reference: the same plates on a Lagrangian mesh of 1800 zones ([`crate::reference::lagrangian`]).
 
@@ -30,12 +33,16 @@ const VELOCITY: f64 = 200.0;
 const DURATION: f64 = 3.6e-6;
 /// Zones of the mesh in 9 mm.
 const ZONES: usize = 1800;
+/// Before any sign of the pulled matter in the spall plane reaches the face [s].
+const PULLED: f64 = 2.9e-6;
 /// Times between which the plateau is read [s].
 const PLATEAU: (f64, f64) = (1.75e-6, 2.05e-6);
 const SMOOTHING: f64 = 0.5;
 
-/// Mean over time of |u - reference| at the free face.
+/// Mean over time of |u - reference| at the free face, until the pulled matter shows there.
 const FACE_VELOCITY_L1: Metric = Metric::norm("face_velocity_l1", "m/s");
+/// The same of the rest of the history.
+const LATE_VELOCITY_L1: Metric = Metric::norm("late_velocity_l1", "m/s");
 /// Velocity of the plateau at the free face.
 const PLATEAU_VELOCITY: Metric = Metric::value("plateau_velocity", "m/s");
 /// Arrival of the precursor at the free face.
@@ -175,14 +182,17 @@ fn measure(history: &[(f64, f64)], reference: &[(f64, f64)]) -> Vec<Measurement>
     let times = |from: f64, to: f64| {
         (0..TIMES).map(move |k| from + (to - from) * (f64::from(k) + 0.5) / f64::from(TIMES))
     };
-    let pairs = times(0.0, DURATION).map(|t| (at(history, t), at(reference, t)));
+    let difference = |from: f64, to: f64| {
+        mean_absolute_difference(times(from, to).map(|t| (at(history, t), at(reference, t))))
+    };
     let plateau =
         |of: &[(f64, f64)]| times(PLATEAU.0, PLATEAU.1).map(|t| at(of, t)).sum::<f64>() / f64::from(TIMES);
     // The precursor lifts the face to 39 m/s: 15 m/s is passed by it, 120 m/s by the shock.
     let arrival = |of: &[(f64, f64)], level: f64| 1e6 * crossing(of, level, 1.3e-6).unwrap_or(f64::NAN);
     let beside = |metric, level| Measurement::new(metric, arrival(history, level), arrival(reference, level));
     vec![
-        Measurement::error_of(FACE_VELOCITY_L1, mean_absolute_difference(pairs)),
+        Measurement::error_of(FACE_VELOCITY_L1, difference(0.0, PULLED)),
+        Measurement::error_of(LATE_VELOCITY_L1, difference(PULLED, DURATION)),
         Measurement::new(PLATEAU_VELOCITY, plateau(history), plateau(reference)),
         beside(PRECURSOR_ARRIVAL, 15.0),
         beside(SHOCK_ARRIVAL, 120.0),

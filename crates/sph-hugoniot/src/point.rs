@@ -384,7 +384,7 @@ impl<'c> Point<'c> {
             averaged_cells: cells.len(),
             mass_balance_velocity: states
                 .map_or(f64::NAN, |s| s.mass_balance_velocity(self.sample.bulk_density())),
-            residuals: states.map(|s| s.jump(shock_velocity).residuals()),
+            residuals: states.map(|s| s.residuals(shock_velocity)),
             states,
             fed_cells: window.fed_cells(),
             steps: window.steps(),

@@ -10,7 +10,7 @@ use sph_core::{Dim2, Particles};
 use sph_window::Window;
 
 /// Number of sums in a bin.
-const SUMS: usize = 8;
+const SUMS: usize = 9;
 
 /// Where the bins stand: `behind` of them at ξ < 0, `ahead` at ξ > 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,6 +77,18 @@ pub struct Bin {
     pub fluctuation_energy: f64,
     /// Momentum flux of that motion along x, ρ⟨u'_x²⟩ [Pa].
     pub fluctuation_stress: f64,
+    /// Energy flux of that motion along x: sound, and heat that jets carry,
+    /// q = ρ⟨u'_x (e' + ½U'²)⟩ - ⟨σ'_xx u'_x + σ'_xy u'_y⟩ [W/m²]; negative where it leaves the front backwards.
+    pub fluctuation_energy_flux: f64,
+}
+
+/// What acts in a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matter {
+    /// Traction on a plane across x: σ_xx, σ_xy [Pa].
+    pub stress: [f64; 2],
+    /// P [Pa].
+    pub pressure: f64,
 }
 
 /// One moment: where the front is, how the medium comes in, where the flow is free, and for how long it stands for.
@@ -103,11 +115,15 @@ impl FrontProfile {
         let (simulation, regions) = (window.simulation(), window.regions());
         let flow = (regions.outlet_end, regions.inlet_start);
         let look = Look { front, inlet_velocity: window.inlet_velocity(), flow, weight };
-        self.add(simulation.particles(), |i| (simulation.stress(i)[0], simulation.pressure(i)), look);
+        let matter = |i: usize| {
+            let [stress_xx, _, _, stress_xy] = simulation.stress(i);
+            Matter { stress: [stress_xx, stress_xy], pressure: simulation.pressure(i) }
+        };
+        self.add(simulation.particles(), matter, look);
     }
 
-    /// Adds particles with their (σ_xx, P) [Pa].
-    pub fn add(&mut self, particles: &Particles<Dim2>, matter: impl Fn(usize) -> (f64, f64), look: Look) {
+    /// Adds particles with what acts in them.
+    pub fn add(&mut self, particles: &Particles<Dim2>, matter: impl Fn(usize) -> Matter, look: Look) {
         let inside = self.bins_within(look);
         if look.weight <= 0.0 || inside.is_empty() {
             return;
@@ -204,9 +220,12 @@ impl FrontProfile {
             sum.time += s.time;
             (0..SUMS).for_each(|k| sum.values[k] += s.values[k]);
         }
-        let [mass, momentum, volume, stress, pressure, internal, kinetic, flux] = sum.values;
+        let [mass, momentum, volume, stress, pressure, internal, kinetic, flux, energy_flux] = sum.values;
         let space = sum.time * self.grid.bin * self.cross_section;
         let velocity = momentum / mass;
+        let fluctuation_flux = (flux - momentum * velocity).max(0.0);
+        // What the mean motion carries and works; the rest of the flux belongs to the motion about the mean.
+        let of_means = velocity * (internal + kinetic - stress + fluctuation_flux);
         Bin {
             place: 0.5 * (self.grid.left(low) + self.grid.left(high)),
             packing_density: mass / space,
@@ -216,19 +235,33 @@ impl FrontProfile {
             velocity,
             internal_energy: internal / mass,
             fluctuation_energy: (kinetic / mass - 0.5 * velocity * velocity).max(0.0),
-            fluctuation_stress: (flux - momentum * velocity).max(0.0) / space,
+            fluctuation_stress: fluctuation_flux / space,
+            fluctuation_energy_flux: (energy_flux - of_means) / space,
         }
     }
 }
 
-/// Mass, momentum, volume, stress and pressure times volume, internal and kinetic energy, momentum times velocity.
-fn contents(particles: &Particles<Dim2>, i: usize, matter: (f64, f64), inlet_velocity: f64) -> [f64; SUMS] {
+/// Mass, momentum, volume, stress and pressure times volume, internal and kinetic energy, momentum times velocity, energy
+/// flux times volume.
+fn contents(particles: &Particles<Dim2>, i: usize, matter: Matter, inlet_velocity: f64) -> [f64; SUMS] {
     let mass = particles.mass[i];
     let volume = mass / particles.density[i];
     let (u, v) = (particles.velocity[0][i] + inlet_velocity, particles.velocity[1][i]);
     let internal = mass * particles.specific_internal_energy[i];
     let kinetic = 0.5 * mass * (u * u + v * v);
-    [mass, mass * u, volume, volume * matter.0, volume * matter.1, internal, kinetic, mass * u * u]
+    let [stress, shear] = matter.stress;
+    let energy_flux = (internal + kinetic) * u - volume * (stress * u + shear * v);
+    [
+        mass,
+        mass * u,
+        volume,
+        volume * stress,
+        volume * matter.pressure,
+        internal,
+        kinetic,
+        mass * u * u,
+        energy_flux,
+    ]
 }
 
 #[cfg(test)]
@@ -262,7 +295,11 @@ pub(super) mod tests {
             let particles = step(front, (9000.0, 6600.0), 250.0, inlet);
             let look = Look { front, inlet_velocity: inlet, flow: (8.0, 196.0), weight: 1.0 };
             let behind = |i: usize| particles.position[0][i] < front;
-            profile.add(&particles, |i| if behind(i) { (-1.8e9, 1.7e9) } else { (-0.2e9, 0.1e9) }, look);
+            let matter = |i: usize| {
+                let (stress, pressure) = if behind(i) { (-1.8e9, 1.7e9) } else { (-0.2e9, 0.1e9) };
+                Matter { stress: [stress, 0.0], pressure }
+            };
+            profile.add(&particles, matter, look);
         }
         profile
     }
@@ -281,6 +318,34 @@ pub(super) mod tests {
         }
         let (low, high) = profile.range();
         assert!((low - -90.0).abs() < 3.0 && (high - 93.0).abs() < 3.0, "{low} {high}");
+    }
+
+    #[test]
+    fn a_sound_wave_in_the_means_shows_the_flux_that_it_carries() {
+        // Layers with u' = ±w and σ' = ±Z w, a wave towards -x: the flux is -Z w² of sound, and of shear ∓ likewise.
+        let (w, impedance) = (2.0, 4.0e7);
+        let mut particles = step(0.0, (9000.0, 9000.0), 0.0, 900.0);
+        particles.specific_internal_energy.iter_mut().for_each(|e| *e = 5.0e4);
+        let sign = |i: usize| if (i / 4).is_multiple_of(2) { 1.0 } else { -1.0 };
+        for i in 0..particles.len() {
+            particles.velocity[0][i] += 300.0 + w * sign(i);
+            particles.velocity[1][i] += w * sign(i);
+        }
+        let matter = |i: usize| Matter {
+            stress: [-2.0e9 + impedance * w * sign(i), 0.5 * impedance * w * sign(i)],
+            pressure: 2.0e9,
+        };
+        let mut profile = FrontProfile::new(ProfileGrid::new(2.0, 200.0), 4.0);
+        profile.add(
+            &particles,
+            matter,
+            Look { front: 100.0, inlet_velocity: 900.0, flow: (8.0, 196.0), weight: 1.0 },
+        );
+        let bin = profile.between(-50.0, 50.0).unwrap();
+        // ½U'² and ρ⟨u'²⟩ change sign with u' or are carried by the mean: only the work of the waves is left.
+        let exact = -1.5 * impedance * w * w;
+        assert!((bin.fluctuation_energy_flux / exact - 1.0).abs() < 1e-6, "{bin:?} {exact}");
+        assert!((bin.fluctuation_energy / (w * w) - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::outcome::PointOutcome;
 pub(super) type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
 
 /// What is measured of a point.
-const MEASURED: [Number<PointOutcome>; 22] = [
+const MEASURED: [Number<PointOutcome>; 23] = [
     ("u_p", "m/s", "particle velocity behind the front, imposed", |o| o.particle_velocity),
     ("u_s", "m/s", "shock velocity relative to the medium ahead, from the front's way", |o| o.shock_velocity),
     ("u_s_error", "m/s", "uncertainty of u_s: batch means over whole cells, and slow drift", |o| {
@@ -38,9 +38,15 @@ const MEASURED: [Number<PointOutcome>; 22] = [
     ("residual_momentum", "", "miss of the jump condition of momentum", |o| {
         o.residuals.map_or(f64::NAN, |r| r.momentum)
     }),
-    ("residual_energy", "", "miss of the jump condition of energy", |o| {
+    ("residual_energy", "", "miss of the jump condition of energy, sound counted", |o| {
         o.residuals.map_or(f64::NAN, |r| r.energy)
     }),
+    (
+        "energy_carried_off",
+        "",
+        "part of the wave's work that leaves the front as sound, heat farther behind",
+        |o| o.states.map_or(f64::NAN, |s| s.energy_carried_off()),
+    ),
     ("pores_left", "", "volume of pores over volume of space behind", |o| {
         o.states.map_or(f64::NAN, |s| s.pores_left())
     }),
@@ -77,7 +83,7 @@ const SPENT: [Number<PointOutcome>; 4] = [
 ];
 
 /// Columns of the averaged profile.
-const PROFILE: [Number<Bin>; 8] = [
+const PROFILE: [Number<Bin>; 9] = [
     ("xi", "m", "distance from the front, positive ahead", |b| b.place),
     ("rho_packing", "kg/m3", "mass per volume of space", |b| b.packing_density),
     ("rho_own", "kg/m3", "density as the particles carry it", |b| b.own_density),
@@ -86,6 +92,9 @@ const PROFILE: [Number<Bin>; 8] = [
     ("u_x", "m/s", "velocity relative to the undisturbed medium", |b| b.velocity),
     ("e", "J/kg", "specific internal energy", |b| b.internal_energy),
     ("k", "J/kg", "kinetic energy of the motion relative to the mean", |b| b.fluctuation_energy),
+    ("q", "W/m2", "energy flux of the motion relative to the mean: sound, jets", |b| {
+        b.fluctuation_energy_flux
+    }),
 ];
 
 /// Columns of the front's way: time, swept length, u_s of each cell.

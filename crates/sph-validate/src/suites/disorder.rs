@@ -93,7 +93,7 @@ fn settings(scheme: SchemeName, closed: bool) -> Settings {
 }
 
 /// Moves each free particle by up to `amplitude` [m] along each axis.
-fn shake(particles: &mut Particles<Dim2>, amplitude: f64) {
+pub(super) fn shake(particles: &mut Particles<Dim2>, amplitude: f64) {
     // Knuth's linear congruential generator; its upper bits.
     let mut state = 12345_u64;
     let mut noise = || {

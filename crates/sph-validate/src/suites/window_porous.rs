@@ -7,7 +7,9 @@
 //! speed, as in the program.
 //!
 //! Variants: u_p in m/s of the copper with strength; `strengthless-…` has a yield strength of 1 MPa in place of
-//! 350 MPa (none at all would switch volume consistency off), which leaves the jump conditions exact.
+//! 350 MPa (none at all would switch volume consistency off), which leaves the jump conditions exact; `200-theta-…` has a
+//! wider kernel, h_ij = θ(D_i + D_j); `200-jitter` moves every particle of the sample by up to a tenth of D along each axis;
+//! `200-precursor` runs twice, with volume consistency and without, and compares the stress of the precursor.
 //!
 //! Measured: shock velocity from the front and from the balance of mass, in % off the middle of what the jump
 //! conditions allow (no deviator to 2Y/3 behind the shock: ± 0.2 %; a precursor of 0.20 GPa stands ahead); both against
@@ -21,11 +23,11 @@ use sph_core::{Components, Dim2, Domain, Particle, Particles};
 use sph_io::plot::{Axis, Figure, Series};
 use sph_materials::porous::{PorousMedium, Precursor};
 use sph_materials::{Material, SoundSpeedModel, Strength};
-use sph_riemann::VolumeConsistency;
+use sph_riemann::{Settings, VolumeConsistency};
 use sph_window::{FeedSample, PlateauMargins, Window, WindowError, WindowSettings};
 
 use super::window::{Averages, advance, outcome};
-use super::{About, Drawing, Picture, ReferenceKind, Suite};
+use super::{About, Drawing, Picture, ReferenceKind, Suite, disorder};
 use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
 use crate::metric::{Measurement, Metric};
@@ -53,24 +55,47 @@ const BALANCE: Metric = Metric::value("mass_balance_error", "%");
 const DISAGREEMENT: Metric = Metric::value("front_less_balance", "%");
 /// Density of the packing over the particles' own, less one.
 const PACKING: Metric = Metric::value("packing_excess", "%");
+/// Stress of the elastic precursor with volume consistency, off that without.
+const PRECURSOR_CHANGE: Metric = Metric::value("precursor_change", "%");
 /// Shock velocity from the front.
 const VELOCITY: Metric = Metric::value("shock_velocity", "m/s");
 
-/// A variant: its name, u_p [m/s], cells of the box, and whether the copper has its strength.
+/// Jitter of the particles where there is one [D].
+const JITTER: f64 = 0.1;
+
+/// A variant: its name, u_p [m/s], cells of the box, and what differs from copper with strength on a lattice, θ = 0.5.
 struct Problem {
     variant: &'static str,
     velocity: f64,
     cells: f64,
-    strong: bool,
+    differs: Differs,
 }
 
-const PROBLEMS: [Problem; 6] = [
-    Problem { variant: "150", velocity: 150.0, cells: 14.0, strong: true },
-    Problem { variant: "200", velocity: 200.0, cells: 12.0, strong: true },
-    Problem { variant: "250", velocity: 250.0, cells: 12.0, strong: true },
-    Problem { variant: "300", velocity: 300.0, cells: 12.0, strong: true },
-    Problem { variant: "strengthless-150", velocity: 150.0, cells: 12.0, strong: false },
-    Problem { variant: "strengthless-300", velocity: 300.0, cells: 12.0, strong: false },
+/// In what a variant differs.
+#[derive(Clone, Copy, PartialEq)]
+enum Differs {
+    Not,
+    /// No strength to speak of.
+    Strengthless,
+    /// Smoothing θ [-].
+    Smoothing(f64),
+    /// Jittered particles.
+    Jittered,
+    /// A second run without volume consistency, for the precursor.
+    Precursor,
+}
+
+const PROBLEMS: [Problem; 10] = [
+    Problem { variant: "150", velocity: 150.0, cells: 14.0, differs: Differs::Not },
+    Problem { variant: "200", velocity: 200.0, cells: 12.0, differs: Differs::Not },
+    Problem { variant: "250", velocity: 250.0, cells: 12.0, differs: Differs::Not },
+    Problem { variant: "300", velocity: 300.0, cells: 12.0, differs: Differs::Not },
+    Problem { variant: "200-theta-0.55", velocity: 200.0, cells: 12.0, differs: Differs::Smoothing(0.55) },
+    Problem { variant: "200-theta-0.60", velocity: 200.0, cells: 12.0, differs: Differs::Smoothing(0.60) },
+    Problem { variant: "200-jitter", velocity: 200.0, cells: 12.0, differs: Differs::Jittered },
+    Problem { variant: "200-precursor", velocity: 200.0, cells: 12.0, differs: Differs::Precursor },
+    Problem { variant: "strengthless-150", velocity: 150.0, cells: 12.0, differs: Differs::Strengthless },
+    Problem { variant: "strengthless-300", velocity: 300.0, cells: 12.0, differs: Differs::Strengthless },
 ];
 
 /// The suite.
@@ -88,27 +113,24 @@ impl Suite for WindowPorous {
     }
 
     fn cases(&self, tier: Tier) -> Vec<Case> {
-        let (problems, resolutions): (&[Problem], &[u32]) = match tier {
-            Tier::Quick => (&PROBLEMS[2..3], &[10]),
-            Tier::Full => (&PROBLEMS, &[10, 20, 30]),
+        let problems = match tier {
+            Tier::Quick => &PROBLEMS[2..3],
+            Tier::Full => &PROBLEMS[..],
         };
-        let grid = |problem: &Problem| {
-            // Printed, the second scheme costs four times the third.
-            let schemes: &[SchemeName] = match (problem.strong, problem.variant) {
-                (true, "250") => &SchemeName::ALL,
-                (true, _) => &[SchemeName::Csph, SchemeName::TkcHancock],
-                (false, _) => &[SchemeName::TkcHancock],
-            };
-            let grid = Case::grid("window-porous", schemes, resolutions).into_iter();
+        let of_scheme = |problem: &Problem, scheme| {
+            let resolutions = if tier == Tier::Quick { &[10] } else { problem.resolutions(scheme) };
+            let grid = Case::grid("window-porous", &[scheme], resolutions).into_iter();
             grid.map(|case| case.of_variant(problem.variant)).collect::<Vec<_>>()
         };
+        let grid = |problem| SchemeName::ALL.into_iter().flat_map(move |scheme| of_scheme(problem, scheme));
         problems.iter().flat_map(grid).collect()
     }
 
     fn work(&self, case: &Case) -> f64 {
         let (problem, n) = (Problem::of(case), f64::from(case.n));
         let steps = FED_CELLS * n / (3.8 * problem.velocity) * 5500.0 / case.scheme.courant();
-        0.85 * problem.cells * n * n * steps * case.scheme.price()
+        let runs = if problem.differs == Differs::Precursor { 2.0 } else { 1.0 };
+        0.85 * runs * problem.cells * n * n * steps * case.scheme.price()
     }
 
     fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError> {
@@ -117,7 +139,10 @@ impl Suite for WindowPorous {
         let copper = problem.copper()?;
         let [low, high] = problem.exact(&copper)?;
         let fault = |source| ValidateError::Window { case: case.to_string(), source: Box::new(source) };
-        let sample = sample(case.n, copper.reference_density).map_err(fault)?;
+        let mut sample = sample(case.n, copper.reference_density).map_err(fault)?;
+        if problem.differs == Differs::Jittered {
+            sample = jittered(&sample, JITTER * CELL / f64::from(case.n)).map_err(fault)?;
+        }
         let settings = WindowSettings {
             // Two cells behind the front and half a cell before the outlet, at every resolution.
             plateau: PlateauMargins { front: 2.0 * f64::from(case.n), outlet: 0.5 * f64::from(case.n) },
@@ -125,9 +150,20 @@ impl Suite for WindowPorous {
         };
         let mut solver = case.scheme.settings();
         solver.volume_consistency = Some(VolumeConsistency::default());
-        let mut window = Window::new(sample, vec![copper], solver, settings).map_err(fault)?;
+        if let Differs::Smoothing(smoothing) = problem.differs {
+            solver.smoothing = smoothing;
+        }
+        let without = Settings { volume_consistency: None, ..solver.clone() };
+        let mut window =
+            Window::new(sample.clone(), vec![copper.clone()], solver, settings.clone()).map_err(fault)?;
         let means = advance(case, &mut window, watch, FED_CELLS * CELL)?;
-        let measurements = measure(&window, &means, [low, high]);
+        let mut measurements = measure(&window, &means, [low, high]);
+        if problem.differs == Differs::Precursor {
+            let mut other = Window::new(sample, vec![copper], without, settings).map_err(fault)?;
+            let plain = advance(case, &mut other, watch, FED_CELLS * CELL)?;
+            let change = 100.0 * (means.stress_ahead / plain.stress_ahead - 1.0);
+            measurements.push(Measurement::error_of(PRECURSOR_CHANGE, change));
+        }
         let curves = vec![Curve::new("velocity", vec![(problem.velocity, means.front_velocity(&window))])];
         Ok(outcome(case, &window, measurements, curves, Vec::new(), started))
     }
@@ -136,7 +172,7 @@ impl Suite for WindowPorous {
         let mut pictures = Vec::new();
         for (strong, name) in [(true, "window-porous"), (false, "window-porous-strengthless")] {
             let of_kind: Vec<&Outcome> =
-                outcomes.iter().copied().filter(|o| Problem::of(&o.case).strong == strong).collect();
+                outcomes.iter().copied().filter(|o| Problem::of(&o.case).is_strong() == strong).collect();
             if !of_kind.is_empty() {
                 pictures.push(picture(name, strong, &of_kind)?);
             }
@@ -150,12 +186,30 @@ impl Problem {
         PROBLEMS.iter().find(|problem| problem.variant == case.variant).unwrap_or(&PROBLEMS[0])
     }
 
+    /// Resolutions of the full tier; the printed scheme costs four times the third.
+    fn resolutions(&self, scheme: SchemeName) -> &'static [u32] {
+        use SchemeName::{Csph, TkcHancock, TkcMuscl};
+        match (self.differs, scheme) {
+            (Differs::Not, TkcHancock) => &[10, 20, 40],
+            (Differs::Not, Csph) => &[10, 20, 30],
+            (Differs::Not, TkcMuscl) if self.variant == "250" => &[10, 20, 30],
+            (Differs::Not, TkcMuscl) => &[10, 20],
+            (Differs::Strengthless, TkcHancock) => &[10, 20, 30],
+            (Differs::Smoothing(_) | Differs::Jittered | Differs::Precursor, TkcHancock) => &[10, 20],
+            _ => &[],
+        }
+    }
+
+    fn is_strong(&self) -> bool {
+        self.differs != Differs::Strengthless
+    }
+
     fn copper(&self) -> Result<Material, ValidateError> {
-        copper(self.strong)
+        copper(self.is_strong())
     }
 
     fn exact(&self, copper: &Material) -> Result<[f64; 2], ValidateError> {
-        exact(copper, self.strong, self.velocity)
+        exact(copper, self.is_strong(), self.velocity)
     }
 }
 
@@ -201,6 +255,18 @@ fn sample(n: u32, density: f64) -> Result<FeedSample<Dim2>, WindowError> {
         particles.push(Particle::at_rest(id, position, density * size * size, size, density));
     }
     let cell = Domain::new([0.0, 0.0].into(), [CELL, CELL].into(), Components::from_fn(|_| true));
+    FeedSample::new(particles, cell)
+}
+
+/// The sample with every particle moved by up to `amplitude` [m] along each axis.
+fn jittered(sample: &FeedSample<Dim2>, amplitude: f64) -> Result<FeedSample<Dim2>, WindowError> {
+    let mut particles = sample.particles().clone();
+    disorder::shake(&mut particles, amplitude);
+    let cell = sample.cell().clone();
+    for axis in 0..2 {
+        let (lower, period) = (cell.lower[axis], cell.period(axis));
+        particles.position[axis].iter_mut().for_each(|x| *x = lower + (*x - lower).rem_euclid(period));
+    }
     FeedSample::new(particles, cell)
 }
 
@@ -250,7 +316,7 @@ mod tests {
 
     #[test]
     fn porosity_is_the_same_at_every_resolution() {
-        for n in [10, 20, 30] {
+        for n in [10, 20, 30, 40] {
             let sample = sample(n, 8960.0).expect("a cell");
             assert!((8960.0 / sample.mean_density() - 100.0 / 74.0).abs() < 1e-9, "n = {n}");
             let mean: f64 =

@@ -25,9 +25,9 @@ pub struct MonitorRow {
     pub momentum_gap: f64,
     /// Gap of the books of energy, as a part of all that was booked [-].
     pub energy_gap: f64,
-    /// Largest specific internal energy over the mean behind the front [-].
+    /// Largest specific internal energy of a free particle over the mean behind the front; zero before there is one [-].
     pub energy_largest_over_mean: f64,
-    /// Least specific internal energy [J/kg].
+    /// Least specific internal energy of a free particle [J/kg].
     pub energy_least: f64,
     /// Density of the packing over the particles' own, behind the front at this moment [-].
     pub packing_over_own: f64,
@@ -93,7 +93,7 @@ pub struct Worst {
     pub energy_gap: f64,
     /// Largest specific internal energy over the mean [-].
     pub energy_largest_over_mean: f64,
-    /// Least specific internal energy [J/kg].
+    /// Least specific internal energy of a free particle [J/kg].
     pub energy_least: f64,
     /// Share of the virtual work at the end [-].
     pub relaxation_share: f64,
@@ -151,7 +151,7 @@ impl Monitors {
             swept: view.swept,
             momentum_gap,
             energy_gap,
-            energy_largest_over_mean: energy.largest / energy.mean,
+            energy_largest_over_mean: energy.ratio(),
             energy_least: energy.least,
             packing_over_own: packing_over_own(window, view),
             relaxation_share: simulation.relaxation_work() / (input * window.sample().cross_section()),
@@ -196,11 +196,11 @@ pub fn worst(rows: &[MonitorRow]) -> Option<Worst> {
     })
 }
 
-/// Specific internal energies [J/kg].
+/// Specific internal energies of free particles [J/kg].
 struct Energies {
     largest: f64,
     least: f64,
-    /// Mean behind the front.
+    /// Mean behind the front; `NaN` before there is matter behind it.
     mean: f64,
 }
 
@@ -209,17 +209,23 @@ impl Energies {
         let particles = window.simulation().particles();
         let mut this = Self { largest: f64::NEG_INFINITY, least: f64::INFINITY, mean: f64::NAN };
         let (mut energy, mut mass) = (0.0, 0.0);
-        for i in 0..particles.len() {
+        // At start-up the outlet is a piston; what its imposed motion does to its own particles is no state of matter.
+        for i in (0..particles.len()).filter(|&i| particles.constraint[i] == Constraint::Free) {
             let e = particles.specific_internal_energy[i];
             this.largest = this.largest.max(e);
             this.least = this.least.min(e);
-            if particles.constraint[i] == Constraint::Free && particles.position[0][i] < view.front {
+            if particles.position[0][i] < view.front {
                 energy += particles.mass[i] * e;
                 mass += particles.mass[i];
             }
         }
         this.mean = energy / mass;
         this
+    }
+
+    /// Largest over mean, zero before there is matter behind the front.
+    fn ratio(&self) -> f64 {
+        if self.mean.is_nan() && self.largest.is_finite() { 0.0 } else { self.largest / self.mean }
     }
 }
 

@@ -13,10 +13,13 @@ const ROW: [Number<MonitorRow>; 14] = [
     ("swept", "m", "length of the medium that the front has swept", |r| r.swept),
     ("momentum_gap", "", "gap of the books of momentum, of all that was booked", |r| r.momentum_gap),
     ("energy_gap", "", "gap of the books of energy, of all that was booked", |r| r.energy_gap),
-    ("e_largest_over_mean", "", "largest specific internal energy over the mean behind the front", |r| {
-        r.energy_largest_over_mean
-    }),
-    ("e_least", "J/kg", "least specific internal energy", |r| r.energy_least),
+    (
+        "e_largest_over_mean",
+        "",
+        "largest specific internal energy of a free particle over the mean behind the front",
+        |r| r.energy_largest_over_mean,
+    ),
+    ("e_least", "J/kg", "least specific internal energy of a free particle", |r| r.energy_least),
     ("packing_over_own", "", "density of the packing over the particles' own, behind the front now", |r| {
         r.packing_over_own
     }),
@@ -40,10 +43,13 @@ const ROW: [Number<MonitorRow>; 14] = [
 const WORST: [Number<Worst>; 8] = [
     ("momentum_gap", "", "largest gap of the books of momentum, of all that was booked", |w| w.momentum_gap),
     ("energy_gap", "", "largest gap of the books of energy, of all that was booked", |w| w.energy_gap),
-    ("e_largest_over_mean", "", "largest specific internal energy over the mean behind the front", |w| {
-        w.energy_largest_over_mean
-    }),
-    ("e_least", "J/kg", "least specific internal energy", |w| w.energy_least),
+    (
+        "e_largest_over_mean",
+        "",
+        "largest specific internal energy of a free particle over the mean behind the front",
+        |w| w.energy_largest_over_mean,
+    ),
+    ("e_least", "J/kg", "least specific internal energy of a free particle", |w| w.energy_least),
     ("relaxation_share", "", "virtual work of volume consistency over the shock's energy input", |w| {
         w.relaxation_share
     }),

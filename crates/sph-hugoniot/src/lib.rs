@@ -39,3 +39,4 @@ pub mod status;
 pub mod study;
 pub mod sweep;
 pub mod template;
+pub mod zone;

@@ -74,7 +74,9 @@ pub struct PointOutcome {
     pub search: Vec<Trial>,
     /// The elastic precursor on its first way through the window.
     pub precursor: Option<Precursor>,
-    /// What it misses the jump conditions of mass, momentum and energy by [-].
+    /// Why it could not be read, if so.
+    pub precursor_missing: Option<String>,
+    /// What its levels miss the conservation of mass, momentum and energy by [-].
     pub precursor_residuals: Option<JumpResiduals>,
     /// Averaged profile in the frame of the front.
     pub profile: Vec<Bin>,
@@ -121,6 +123,7 @@ impl PointOutcome {
             blocks: Vec::new(),
             search: Vec::new(),
             precursor: None,
+            precursor_missing: None,
             precursor_residuals: None,
             profile: Vec::new(),
             profile_looks: 0,

@@ -27,6 +27,7 @@ use crate::monitor::{FrontView, Monitors};
 use crate::observe::{Bin, Fields, FrontProfile, PrecursorWatch, ProfileGrid, States};
 use crate::outcome::{PointOutcome, Status};
 use crate::restart::Keeper;
+use crate::separation;
 use crate::series::SeriesLog;
 use crate::settle::{self, BlockRecord, Decision};
 use crate::setup;
@@ -399,6 +400,7 @@ impl<'c> Point<'c> {
             blocks: self.progress.log.clone(),
             search: window.audit().to_vec(),
             precursor: self.progress.precursor.found(),
+            precursor_missing: self.progress.precursor.missing(),
             precursor_residuals: self
                 .progress
                 .precursor
@@ -429,6 +431,15 @@ impl<'c> Point<'c> {
                 2 * cells
             )];
         };
-        states.warnings(self.sample.cell, cells, place)
+        let case = self.case;
+        let precursor = self.progress.precursor.found();
+        let one_wave = separation::finding(
+            &case.material,
+            case.medium.porosity,
+            self.particle_velocity,
+            harmonic_mean(&self.counted_cells()),
+            precursor.as_ref(),
+        );
+        one_wave.into_iter().chain(states.warnings(self.sample.cell, cells, place)).collect()
     }
 }

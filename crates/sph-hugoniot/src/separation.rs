@@ -1,4 +1,4 @@
-//! Up to which u_p a compaction front separates from the elastic precursor.
+//! Between which u_p a compaction front separates from the elastic precursor.
 //!
 //! A front that is as fast as the precursor has overrun it: one wave is left, the state ahead of the front is the undisturbed
 //! medium, and neither σ_HEL nor the jump Δσ that the product reports exist.
@@ -14,11 +14,22 @@
 //! are equal lies the limit. It is an upper one: yielding around the pores makes a real precursor slower (2.6 to 2.8 km/s
 //! in the shipped case, where the bound says 3.5 km/s). For a solid without pores it is exact (its own two waves).
 //!
+//! **Too slow.** A piston slower than the matter behind the precursor drives an elastic wave alone. The precursor carries no
+//! more than the stress P_c that makes the walls of the pores yield throughout ([`crate::zone::crush_stress`]; 0.27 GPa in
+//! the shipped case, where a run reads 0.21), in a solid that of its Hugoniot elastic limit, and is not faster than c: below
+//!
+//! \\[ u_e = \frac{\sigma_{HEL}}{\rho_{00} c} \\]
+//!
+//! (12 m/s in the shipped case) no front separates. What neither bound sees is told after the run ([`finding`]).
+//!
 //! Source of the bounds: Z. Hashin, J. Mech. Phys. Solids 13 (1965) 119; R. Hill, J. Mech. Phys. Solids 12 (1964) 199.
 
 use sph_materials::hugoniot::overdriven_threshold;
 use sph_materials::porous::{PorousMedium, Precursor, ShearBehind};
 use sph_materials::{Material, Strength};
+
+use crate::observe;
+use crate::zone::crush_stress;
 
 /// Porosity below which a medium counts as solid.
 const SOLID: f64 = 1.0 + 1e-9;
@@ -61,8 +72,30 @@ pub fn limiting_particle_velocity(material: &Material, porosity: f64) -> Option<
     Some(low)
 }
 
-/// What is wrong with a u_p [m/s], if it is too fast for the medium: the message and a hint.
+/// Estimate of σ_HEL [Pa] and of the velocity u_e that the precursor gives to the matter [m/s]; `None` without yield strength.
+pub fn elastic_limit(material: &Material, porosity: f64) -> Option<(f64, f64)> {
+    let Strength::PerfectPlastic { yield_strength, .. } = material.strength else { return None };
+    let (rho, shear) = (material.reference_density, material.strength.shear_modulus());
+    let speed = fastest_precursor(material, porosity);
+    let solid = 0.5 * yield_strength * rho * material.longitudinal_sound_speed(rho, 0.0).powi(2) / shear;
+    let stress = if porosity <= SOLID { solid } else { crush_stress(material, porosity).min(solid) };
+    Some((stress, stress * porosity / (rho * speed)))
+}
+
+/// What is wrong with a u_p [m/s], if it is too slow or too fast for the medium: the message and a hint.
 pub fn refusal(material: &Material, porosity: f64, particle_velocity: f64) -> Option<(String, String)> {
+    if let Some((stress, slowest)) =
+        elastic_limit(material, porosity).filter(|limit| particle_velocity < limit.1)
+    {
+        return Some((
+            format!(
+                "u_p = {particle_velocity} m/s: no front separates: an elastic precursor of σ_HEL = {:.2} GPa alone gives the \
+                 matter {slowest:.0} m/s",
+                stress / 1e9
+            ),
+            format!("at least {:.0} m/s for this medium (m = {porosity:.3})", slowest.ceil()),
+        ));
+    }
     let limit = limiting_particle_velocity(material, porosity)?;
     (particle_velocity >= limit).then(|| {
         let fastest = if porosity <= SOLID { f64::NAN } else { fastest_precursor(material, porosity) };
@@ -74,6 +107,39 @@ pub fn refusal(material: &Material, porosity: f64, particle_velocity: f64) -> Op
         (
             format!("u_p = {particle_velocity} m/s: the front overruns the elastic precursor{speed}"),
             format!("below {:.0} m/s for this medium (m = {porosity:.3})", limit.floor()),
+        )
+    })
+}
+
+/// A front faster than this part of the fastest precursor has no room to separate from it.
+const CLOSE: f64 = 0.6;
+/// Up to so many times u_e a front that is as fast as the precursor is the precursor.
+const ELASTIC: f64 = 4.0;
+
+/// What a run says about the separation, if it failed: both waves are one.
+pub fn finding(
+    material: &Material,
+    porosity: f64,
+    particle_velocity: f64,
+    shock_velocity: f64,
+    precursor: Option<&observe::Precursor>,
+) -> Option<String> {
+    let (stress, slowest) = elastic_limit(material, porosity)?;
+    let speed = precursor.map_or(CLOSE * fastest_precursor(material, porosity), |p| p.foot_speed);
+    if shock_velocity.is_nan() || shock_velocity < speed {
+        return None;
+    }
+    let words =
+        format!("the front runs with {shock_velocity:.0} m/s, the elastic precursor with {speed:.0} m/s");
+    Some(if particle_velocity < ELASTIC * slowest {
+        format!(
+            "elastic: {words}: no compaction front has separated from it; hint: u_p well above {slowest:.0} m/s, where \
+             σ_HEL = {:.2} GPa is reached",
+            stress / 1e9
+        )
+    } else {
+        format!(
+            "overdriven: {words}: one wave is left, and σ_HEL and the stress jump mean nothing; hint: a smaller u_p"
         )
     })
 }
@@ -102,6 +168,27 @@ mod tests {
             "{message}"
         );
         assert!(hint.starts_with("below "), "{hint}");
+    }
+
+    #[test]
+    fn below_the_elastic_limit_there_is_no_front() {
+        let (stress, slowest) = elastic_limit(&copper(), 1.35).unwrap();
+        assert!((stress / 0.2728e9 - 1.0).abs() < 1e-3 && (slowest - 11.7).abs() < 0.1, "{stress} {slowest}");
+        let (message, hint) = refusal(&copper(), 1.35, 8.0).unwrap();
+        assert!(message.contains("no front separates") && message.contains("0.27 GPa"), "{message}");
+        assert_eq!(hint, "at least 12 m/s for this medium (m = 1.350)");
+        // σ_HEL = Y (K + 4G/3)/(2G) = 0.796 GPa of the solid, over ρ0 c_l.
+        let (stress, slowest) = elastic_limit(&copper(), 1.0).unwrap();
+        assert!((stress / 0.7964e9 - 1.0).abs() < 1e-3 && (slowest - 19.0).abs() < 0.1, "{stress} {slowest}");
+    }
+
+    #[test]
+    fn a_run_without_two_waves_says_which_one_is_left() {
+        let say = |u_p: f64, u_s: f64| finding(&copper(), 1.35, u_p, u_s, None);
+        assert_eq!(say(300.0, 1119.0), None);
+        assert_eq!(say(50.0, f64::NAN), None);
+        assert!(say(15.0, 2700.0).unwrap().starts_with("elastic: the front runs with 2700 m/s"));
+        assert!(say(850.0, 3060.0).unwrap().starts_with("overdriven: "));
     }
 
     #[test]

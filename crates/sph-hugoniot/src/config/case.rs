@@ -7,6 +7,8 @@ use sph_materials::Material;
 use sph_riemann::Settings;
 use sph_window::{InletKind, Search};
 
+use crate::zone::AutoLength;
+
 pub use super::medium::{Medium, Packing, Pores};
 
 /// A case that can be run.
@@ -76,8 +78,10 @@ impl Case {
 /// The moving window.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WindowCase {
-    /// Length in cells; `None`: from u_p, see [`WindowCase::cells_at`].
+    /// Length in cells; `None`: from u_p.
     pub cells: Option<usize>,
+    /// The length from u_p, where none is given.
+    pub automatic: AutoLength,
     /// Width of the inlet and of each outlet region [D].
     pub region_width: f64,
     /// What is imposed at the inlet.
@@ -87,12 +91,9 @@ pub struct WindowCase {
 }
 
 impl WindowCase {
-    /// Length of the window at u_p [m/s], in cells: 24 to 100 m/s, 12 from 200 m/s on, linear between.
-    ///
-    /// Slow compaction waves are wide: pores close late and the relaxation zone behind the front is long.
+    /// Length of the window at u_p [m/s], in cells: as given, else what the medium needs to relax ([`crate::zone`]).
     pub fn cells_at(&self, particle_velocity: f64) -> usize {
-        let automatic = 24.0 - 12.0 * ((particle_velocity - 100.0) / 100.0).clamp(0.0, 1.0);
-        self.cells.unwrap_or(automatic.round() as usize)
+        self.cells.unwrap_or_else(|| self.automatic.cells_at(particle_velocity))
     }
 }
 

@@ -8,6 +8,7 @@ use sph_case::{Checker, Faults, Field, Span};
 use super::case::*;
 use super::resolve_medium::Surroundings;
 use super::schema::*;
+use crate::zone::AutoLength;
 
 /// The newest format of case files, and so far the only one. A change after which an old file would be read differently
 /// raises it; [`resolve()`] then translates the older formats, or refuses them with what to write instead. Further fields
@@ -39,7 +40,11 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
         schema.points.required("points", whole, faults).and_then(|p| r.points(p, &span_of(&schema.points)));
     let data = r.data(&schema.data);
     let scheme = r.group(&schema.scheme, |s| r.scheme(s));
-    let window = r.group(&schema.window, |w| r.window(w));
+    let parts = medium.as_ref().zip(materials.as_deref().and_then(<[_]>::first));
+    let automatic = |place: f64| {
+        parts.map_or(AutoLength::UNKNOWN, |(medium, material)| AutoLength::new(medium, material, place))
+    };
+    let window = r.group(&schema.window, |w| r.window(w, automatic));
     let search = r.search(&schema.search);
     let stop = r.group(&schema.stop, |s| r.stop(s));
     let output = r.group(&schema.output, |o| r.output(o, name.as_deref()));

@@ -7,6 +7,7 @@ use super::case::WindowCase;
 use super::field::Field;
 use super::resolve::Resolver;
 use super::schema::*;
+use crate::zone::AutoLength;
 
 impl Resolver<'_> {
     pub(super) fn scheme(&self, s: &SchemeSchema) -> Option<Settings> {
@@ -87,7 +88,11 @@ impl Resolver<'_> {
         }
     }
 
-    pub(super) fn window(&self, w: &WindowSchema) -> Option<WindowCase> {
+    pub(super) fn window(
+        &self,
+        w: &WindowSchema,
+        automatic: impl Fn(f64) -> AutoLength,
+    ) -> Option<WindowCase> {
         let cells = match &w.length {
             Field::Bad(_) => None,
             Field::Absent | Field::Good(LengthSchema::Auto, _) => Some(None),
@@ -103,12 +108,13 @@ impl Resolver<'_> {
                 good.then_some(InletKind::ImpedanceMatched { wave_speed })
             }
         };
-        let front_place = self.number(&w.front_place, 0.5, 0.2, 0.8);
+        let front_place = self.number(&w.front_place, 0.5, 0.2, 0.8)?;
         Some(WindowCase {
             cells: cells?,
+            automatic: automatic(front_place),
             region_width: region_width?,
             inlet: inlet?,
-            front_place: front_place?,
+            front_place,
         })
     }
 }

@@ -1,144 +1,332 @@
 //! The elastic precursor, on its first way through the window.
 //!
 //! At the start the medium ahead is at rest and without stress. Until the precursor comes to the inlet (which reflects it,
-//! unless it is matched) its own state and speed can be read: the velocity u_e that it gives to the matter, from the
-//! stretch between the compaction front and its own foot; its speed D_e, from the way of the place where the velocity is
-//! half of u_e; stress, density and energy, from the same stretch.
+//! unless it is matched) it can be read. In a porous medium it is no step: matter yields at the walls of the pores first,
+//! so that the wave is a **ramp that spreads**. It is read level by level, in the way of Lagrangian gauges: the level u of
+//! the particle velocity runs through the matter with
 //!
-//! In a porous medium the precursor is a ramp that spreads, so that D_e belongs to its middle and is not the speed of its
-//! foot, and the jump conditions, which are those of a steady wave, are missed by what the ramp gains in length.
+//! \\[ c(u) = \frac{w(u) - u}{1 - \epsilon(u)}, \qquad \epsilon(u) = 1 - \frac{\rho_{00}}{\rho} = \int_0^u \frac{du'}{c} \\]
 //!
-//! All velocities are relative to the undisturbed medium; places are those in the medium, X = X_fed + x.
+//! where w is its speed in the undisturbed medium's frame: the slope of its place against time. The conservation laws of
+//! a ramp follow from its levels; σ is counted positive in compression here:
+//!
+//! \\[ \sigma(u) = \rho_{00} \int_0^u c\,du', \qquad e(u) = \frac{1}{\rho_{00}} \int_0^u \frac{\sigma}{c}\,du'. \\]
+//!
+//! The first of them is exact at any moment, steady or not; the others hold where levels keep their speed. With one speed
+//! for all levels they are the jump conditions of a steady wave. The state behind is read two cells ahead of the compaction
+//! front, where that front is not felt yet, and compared with them: the three residuals.
+//!
+//! Source: R. Fowles & R. F. Williams, J. Appl. Phys. 41 (1970) 360, for the analysis of waves by their phase velocities.
 
 use serde::{Deserialize, Serialize};
 use sph_core::Dim2;
 use sph_materials::jump::JumpResiduals;
-use sph_materials::{Jump, ShockState};
 use sph_window::Window;
 
 use super::profile::{FrontProfile, ProfileGrid};
 use super::states::MeanState;
 
+/// Levels that the rise is cut into.
+const LEVELS: usize = 8;
 /// Part of the speed behind it that says that the precursor has come to a place.
 const FOOT: f64 = 0.1;
-/// Distance from the inlet at which it counts as arrived: a slow window is looked at seldom, and the inlet stops the matter
-/// again [cells].
-const NEAR: f64 = 4.0;
-/// Distance of the stretch that is read from the front and from the precursor's middle [cells].
-const MARGIN: f64 = 1.5;
+/// Distance from the inlet at which it counts as arrived: the inlet stops the matter [cells], and as a part of the window.
+const NEAR: (f64, f64) = (4.0, 0.3);
+/// Distance ahead of the front where the state behind the precursor is read [cells].
+const BEHIND: f64 = 2.0;
+/// Least distance between that place and the precursor's foot [cells].
+const ROOM: f64 = 1.5;
+/// Part of the looks, the last ones, that speeds are taken from, and how many at least.
+const LATE: (f64, usize) = (0.4, 4);
+/// Looks that are kept at the most.
+const MOST: usize = 2000;
 
 /// What was read of the precursor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Precursor {
-    /// Speed D_e of its middle [m/s].
+    /// Speed relative to the matter, mean over its rise [m/s].
     pub speed: f64,
-    /// The state behind it.
+    /// Speed of its foot, the lowest level [m/s].
+    pub foot_speed: f64,
+    /// The state behind it; velocities relative to the undisturbed medium.
     pub behind: MeanState,
+    /// Speeds c of the levels (k + ½)/8 of the velocity behind [m/s].
+    pub level_speeds: [f64; LEVELS],
 }
 
 impl Precursor {
-    /// What the jump conditions are missed by, with undisturbed medium of a density [kg/m³] ahead.
+    /// What the conservation laws of the ramp are missed by, with undisturbed medium of a density [kg/m³] ahead.
     pub fn residuals(&self, bulk_density: f64) -> JumpResiduals {
         let behind = self.behind.as_shock_state();
-        Jump { ahead: ShockState::at_rest(bulk_density), behind, wave_speed: self.speed }.residuals()
+        let u = behind.particle_velocity;
+        let du = u / LEVELS as f64;
+        let (mut stress, mut strain, mut energy) = (0.0, 0.0, 0.0);
+        for c in self.level_speeds {
+            energy += (stress / c + 0.5 * bulk_density * du) * du / bulk_density;
+            stress += bulk_density * c * du;
+            strain += du / c;
+        }
+        JumpResiduals {
+            mass: behind.density * (1.0 - strain) / bulk_density - 1.0,
+            momentum: 1.0 + stress / behind.longitudinal_stress,
+            energy: (behind.specific_internal_energy - energy) / (energy + 0.5 * u * u),
+        }
     }
 }
 
-/// One look at the velocities along x.
+/// One look along x: means over a cell, half a cell apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Look {
     time: f64,
-    /// Swept length minus place in the box [m].
+    /// Length fed [m].
     fed: f64,
     front: f64,
-    velocities: Vec<f64>,
+    /// Middle of the first mean, and their distance [m].
+    first: f64,
+    spacing: f64,
+    means: Vec<MeanState>,
 }
 
 /// Watches the precursor until it comes to the inlet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PrecursorWatch {
-    spacing: f64,
     looks: Vec<Look>,
-    found: Option<Precursor>,
-    over: bool,
+    end: Option<Result<Precursor, String>>,
 }
 
 impl PrecursorWatch {
     /// The precursor, once it has come to the inlet.
     pub fn found(&self) -> Option<Precursor> {
-        self.found
+        self.end.as_ref().and_then(|end| end.as_ref().ok().copied())
+    }
+
+    /// Why there is none.
+    pub fn missing(&self) -> Option<String> {
+        match &self.end {
+            None => Some("the point ended before it had passed".into()),
+            Some(end) => end.as_ref().err().cloned(),
+        }
     }
 
     /// True while the precursor is under way.
     pub fn is_watching(&self) -> bool {
-        !self.over
+        self.end.is_none()
     }
 
     /// Takes the window's present state in. The medium's cell is `cell` long [m].
     pub fn observe(&mut self, window: &Window<Dim2>, cell: f64) {
-        let Some(front) = window.front_position() else { return };
-        let profile = window.profile();
-        self.spacing = profile.spacing();
-        let velocities: Vec<f64> =
-            (0..profile.len()).map(|n| profile.around(n).velocity() + window.inlet_velocity()).collect();
-        let look = Look { time: window.time(), fed: window.fed_length(), front, velocities };
-        let behind = self.value(&look, front + MARGIN * cell);
-        let near = window.regions().inlet_start - (NEAR * cell).min(0.3 * window.regions().length);
-        let nodes = look.velocities.get((near / self.spacing) as usize..).unwrap_or_default();
-        let arrived = nodes.iter().any(|&u| u > FOOT * behind);
-        if arrived && behind > 0.0 {
-            self.finish(window, cell);
-        } else {
-            self.looks.push(look);
+        let Some(look) = Look::of(window, cell) else { return };
+        let regions = window.regions();
+        let end = regions.inlet_start - (NEAR.0 * cell).min(NEAR.1 * regions.length);
+        self.take(look, cell, end);
+    }
+
+    /// Takes a look in; the precursor has passed when its foot is at `end` [m].
+    fn take(&mut self, look: Look, cell: f64, end: f64) {
+        let behind = look.front + BEHIND * cell;
+        let foot = look.at(behind).and_then(|state| look.crossing(FOOT * state.velocity));
+        self.looks.push(look);
+        if behind >= end || foot.is_some_and(|foot| foot >= end) || self.looks.len() >= MOST {
+            self.end = Some(read(&self.looks, cell));
+            self.looks = Vec::new();
         }
     }
+}
 
-    fn value(&self, look: &Look, place: f64) -> f64 {
-        look.velocities.get((place / self.spacing).round() as usize).copied().unwrap_or(0.0)
+impl Look {
+    fn of(window: &Window<Dim2>, cell: f64) -> Option<Self> {
+        let front = window.front_position()?;
+        let half = 0.5 * cell;
+        let count = (window.regions().length / half).ceil() as usize;
+        let grid = ProfileGrid { bin: half, behind: 0, ahead: count };
+        let mut profile = FrontProfile::new(grid, window.sample().cross_section());
+        profile.observe(window, 0.0, 1.0);
+        let (low, high) = profile.range();
+        let nodes = ((high - low) / half - 0.5).max(0.0) as usize;
+        let mean = |k: usize| profile.between(low + k as f64 * half, low + k as f64 * half + cell);
+        let means: Vec<MeanState> = (0..nodes).map_while(mean).map(MeanState::from).collect();
+        let (time, fed) = (window.time(), window.fed_length());
+        Some(Self { time, fed, front, first: low + half, spacing: half, means })
     }
 
-    /// Rightmost place where the velocity is above a level [m].
-    fn crossing(&self, look: &Look, level: f64) -> Option<f64> {
-        let u = &look.velocities;
-        let node = u.iter().rposition(|&u| u >= level).filter(|&n| n + 1 < u.len())?;
-        let part = (u[node] - level) / (u[node] - u[node + 1]);
-        Some((node as f64 + part) * self.spacing)
+    /// The state at a place in the box [m], between the two nearest means.
+    fn at(&self, place: f64) -> Option<MeanState> {
+        let index = (place - self.first) / self.spacing;
+        let node = index.floor().max(0.0) as usize;
+        let (a, b) = (self.means.get(node)?, self.means.get(node + 1)?);
+        Some(a.toward(b, (index - node as f64).clamp(0.0, 1.0)))
     }
 
-    /// The precursor has come to the inlet: its state, from the present look, and its speed, from all.
-    fn finish(&mut self, window: &Window<Dim2>, cell: f64) {
-        self.over = true;
-        self.found = self.read(window, cell);
-        self.looks = Vec::new();
+    /// Rightmost place in the box where the velocity falls through a level [m].
+    fn crossing(&self, level: f64) -> Option<f64> {
+        let u = |n: usize| self.means[n].velocity;
+        let node =
+            (0..self.means.len().saturating_sub(1)).rev().find(|&n| u(n) >= level && u(n + 1) < level)?;
+        let part = (u(node) - level) / (u(node) - u(node + 1));
+        (level > 0.0).then_some(self.first + (node as f64 + part) * self.spacing)
+    }
+}
+
+/// The precursor from all looks, or why it cannot be read.
+fn read(looks: &[Look], cell: f64) -> Result<Precursor, String> {
+    let count = ((LATE.0 * looks.len() as f64) as usize).max(LATE.1);
+    let late = looks
+        .get(looks.len().saturating_sub(count)..)
+        .filter(|late| late.len() >= LATE.1)
+        .ok_or_else(|| format!("it passed within {} looks", looks.len()))?;
+    let middle = &late[late.len() / 2];
+    let place = middle.front + BEHIND * cell;
+    let behind = middle.at(place).ok_or("the front was too near to the inlet")?;
+    let room = middle.crossing(FOOT * behind.velocity).map_or(0.0, |foot| (foot - place) / cell);
+    if room < ROOM {
+        return Err(format!(
+            "its foot had left the front by {:.1} cells only when it came to the inlet: a longer window; if that does not \
+             help the front is as fast as it is",
+            room + BEHIND
+        ));
+    }
+    let level_speeds = level_speeds(late, behind.velocity)?;
+    let speed = level_speeds.iter().sum::<f64>() / LEVELS as f64;
+    Ok(Precursor { speed, foot_speed: level_speeds[0], behind, level_speeds })
+}
+
+/// c of each level of a rise to `velocity` [m/s].
+fn level_speeds(late: &[Look], velocity: f64) -> Result<[f64; LEVELS], String> {
+    let du = velocity / LEVELS as f64;
+    let (mut speeds, mut strain) = ([0.0; LEVELS], 0.0);
+    for (k, speed) in speeds.iter_mut().enumerate() {
+        let level = (k as f64 + 0.5) * du;
+        let way: Option<Vec<(f64, f64)>> =
+            late.iter().map(|look| Some((look.time, look.crossing(level)? + look.fed))).collect();
+        let way = way.ok_or_else(|| format!("its level of {level:.1} m/s was not there all the time"))?;
+        // The strain up to the level itself, with the speed of the one below for the last half step.
+        *speed = (slope(&way) - level) / (1.0 - strain);
+        if *speed <= 0.0 || !speed.is_finite() {
+            return Err(format!("its level of {level:.1} m/s does not run ahead"));
+        }
+        strain += du / *speed;
+    }
+    Ok(speeds)
+}
+
+/// Slope of the straight line through places [m] over times [s].
+fn slope(way: &[(f64, f64)]) -> f64 {
+    let n = way.len() as f64;
+    let (t, x) = way.iter().fold((0.0, 0.0), |s, p| (s.0 + p.0 / n, s.1 + p.1 / n));
+    let (product, square) =
+        way.iter().fold((0.0, 0.0), |s, p| (s.0 + (p.0 - t) * (p.1 - x), s.1 + (p.0 - t).powi(2)));
+    product / square
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DENSITY: f64 = 6637.0;
+    const CELL: f64 = 2e-5;
+    /// Velocity behind the precursor, and of the compaction wave and its matter [m/s].
+    const BEHIND_U: f64 = 12.0;
+    const SHOCK: (f64, f64) = (400.0, 100.0);
+
+    /// A centered ramp whose levels run with speeds that fall from `foot` to `top` [m/s], at a time [s].
+    fn look(time: f64, foot: f64, top: f64) -> Look {
+        let front = SHOCK.0 * time;
+        // Speeds in the laboratory; the matter of a level has run (strain) x back in the mean.
+        let state = |x: f64| {
+            let u = if x < front {
+                SHOCK.1
+            } else {
+                // Invert w(u) = x/t on a table of levels.
+                let table = ramp(foot, top);
+                table.iter().rev().find(|level| level.w >= x / time).map_or(0.0, |level| level.u)
+            };
+            let table = ramp(foot, top);
+            let level = table.iter().rev().find(|level| level.u <= u.min(BEHIND_U)).copied().unwrap_or(REST);
+            MeanState {
+                packing_density: DENSITY / (1.0 - level.strain),
+                own_density: 8960.0,
+                stress: -level.stress,
+                pressure: level.stress,
+                velocity: u,
+                internal_energy: level.energy,
+                fluctuation_energy: 0.0,
+                fluctuation_stress: 0.0,
+            }
+        };
+        let means = (0..48).map(|k| state((k as f64 + 0.5) * 0.5 * CELL)).collect();
+        Look { time, fed: 0.0, front, first: 0.25 * CELL, spacing: 0.5 * CELL, means }
     }
 
-    fn read(&self, window: &Window<Dim2>, cell: f64) -> Option<Precursor> {
-        let last = self.looks.last()?;
-        // The velocity right ahead of the front is a first guess of u_e; its middle bounds the stretch that is read.
-        let guess = self.value(last, last.front + MARGIN * cell);
-        let middle = self.crossing(last, 0.5 * guess)?;
-        let (from, to) = (MARGIN * cell, middle - MARGIN * cell - last.front);
-        let regions = window.regions();
-        let mut profile =
-            FrontProfile::new(ProfileGrid::new(0.5 * cell, regions.length), window.sample().cross_section());
-        profile.observe(window, last.front, 1.0);
-        let behind: MeanState = profile.between(from, to)?.into();
-        Some(Precursor { speed: self.speed(last, 0.5 * behind.velocity)?, behind })
+    const REST: Level = Level { u: 0.0, w: 0.0, strain: 0.0, stress: 0.0, energy: 0.0 };
+
+    #[derive(Clone, Copy)]
+    struct Level {
+        u: f64,
+        w: f64,
+        strain: f64,
+        stress: f64,
+        energy: f64,
     }
 
-    /// Slope of the place of a level against time, over the second half of its way [m/s].
-    fn speed(&self, last: &Look, level: f64) -> Option<f64> {
-        let places: Vec<(f64, f64)> = self
-            .looks
-            .iter()
-            .filter_map(|look| Some((look.time - last.time, self.crossing(look, level)? + look.fed)))
-            .collect();
-        let late = &places[places.len() / 2..];
-        let n = late.len() as f64;
-        let (mean_t, mean_x) = late.iter().fold((0.0, 0.0), |s, p| (s.0 + p.0 / n, s.1 + p.1 / n));
-        let (product, square) = late
-            .iter()
-            .fold((0.0, 0.0), |s, p| (s.0 + (p.0 - mean_t) * (p.1 - mean_x), s.1 + (p.0 - mean_t).powi(2)));
-        (late.len() >= 3 && square > 0.0).then(|| product / square)
+    /// The ramp by small steps of u: c(u) falls linearly.
+    fn ramp(foot: f64, top: f64) -> Vec<Level> {
+        const STEPS: usize = 2000;
+        let du = BEHIND_U / STEPS as f64;
+        let mut level = REST;
+        (0..STEPS)
+            .map(|k| {
+                let c = foot + (top - foot) * (k as f64 + 0.5) / STEPS as f64;
+                level.energy += (level.stress / c + 0.5 * DENSITY * du) * du / DENSITY;
+                level.stress += DENSITY * c * du;
+                level.strain += du / c;
+                level.u += du;
+                level.w = level.u + c * (1.0 - level.strain);
+                level
+            })
+            .collect()
+    }
+
+    fn watched(foot: f64, top: f64) -> PrecursorWatch {
+        let mut watch = PrecursorWatch::default();
+        for k in 1..600 {
+            if watch.is_watching() {
+                watch.take(look(2e-9 * f64::from(k), foot, top), CELL, 4e-4);
+            }
+        }
+        watch
+    }
+
+    #[test]
+    fn a_spreading_ramp_obeys_the_conservation_laws_of_its_levels() {
+        let watch = watched(2700.0, 1300.0);
+        let found = watch.found().unwrap_or_else(|| panic!("{:?}", watch.missing()));
+        println!("{found:?}");
+        let residuals = found.residuals(DENSITY);
+        assert!(residuals.worst() < 0.02, "{residuals:?}");
+        assert!((found.foot_speed / 2650.0 - 1.0).abs() < 0.02, "{found:?}");
+        assert!((found.behind.velocity - BEHIND_U).abs() < 1e-9);
+        // One speed for all levels would miss the energy: the check is no identity.
+        let steady = Precursor { level_speeds: [found.speed; LEVELS], ..found };
+        assert!(steady.residuals(DENSITY).energy.abs() > 2.0 * residuals.energy.abs());
+    }
+
+    #[test]
+    fn levels_of_one_speed_give_the_jump_conditions() {
+        use sph_materials::{Jump, ShockState};
+        let behind = MeanState { velocity: 12.0, ..look(1e-7, 2600.0, 2500.0).means[12] };
+        let steady = Precursor { speed: 2550.0, foot_speed: 2550.0, behind, level_speeds: [2550.0; LEVELS] };
+        let ramp = steady.residuals(DENSITY);
+        let ahead = ShockState::at_rest(DENSITY);
+        let jump = Jump { ahead, behind: behind.as_shock_state(), wave_speed: 2550.0 }.residuals();
+        assert!((ramp.mass - jump.mass).abs() < 1e-4, "{ramp:?} {jump:?}");
+        assert!((ramp.momentum - jump.momentum).abs() < 1e-4, "{ramp:?} {jump:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_read_says_why() {
+        let fast = watched(470.0, 430.0);
+        assert!(fast.found().is_none());
+        assert!(fast.missing().unwrap().contains("a longer window"), "{:?}", fast.missing());
+        assert!(PrecursorWatch::default().missing().unwrap().contains("ended before"));
     }
 }

@@ -55,6 +55,21 @@ impl From<Bin> for MeanState {
 }
 
 impl MeanState {
+    /// The state a part of the way toward another.
+    pub(super) fn toward(&self, other: &Self, part: f64) -> Self {
+        let mix = |value: fn(&Self) -> f64| value(self) + part * (value(other) - value(self));
+        Self {
+            packing_density: mix(|s| s.packing_density),
+            own_density: mix(|s| s.own_density),
+            stress: mix(|s| s.stress),
+            pressure: mix(|s| s.pressure),
+            velocity: mix(|s| s.velocity),
+            internal_energy: mix(|s| s.internal_energy),
+            fluctuation_energy: mix(|s| s.fluctuation_energy),
+            fluctuation_stress: mix(|s| s.fluctuation_stress),
+        }
+    }
+
     /// The state as the jump conditions see it: fluctuations counted as stress and energy.
     pub(super) fn as_shock_state(&self) -> ShockState {
         ShockState {
@@ -150,8 +165,8 @@ impl States {
         if needed > self.room_behind {
             let cells = (in_cells(needed + 1.5 * cell) / front_place).ceil().max(window_cells as f64 + 2.0);
             list.push(format!(
-                "the matter still relaxes {:.1} cells behind the front, and the window has room for {:.1}; hint: window: \
-                 (length: Cells({cells}))",
+                "box too short for the relaxation zone: the matter still relaxes {:.1} cells behind the front, and the \
+                 window has room for {:.1}; hint: window: (length: Cells({cells}))",
                 in_cells(self.relaxation_length),
                 in_cells(self.room_behind),
             ));

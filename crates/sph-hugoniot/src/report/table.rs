@@ -53,8 +53,11 @@ const MEASURED: [Number<PointOutcome>; 23] = [
     ("relaxation_length", "m", "how far behind the front the matter still relaxes", |o| {
         o.states.map_or(f64::NAN, |s| s.relaxation_length)
     }),
-    ("precursor_speed", "m/s", "speed of the middle of the elastic precursor, on its first way", |o| {
+    ("precursor_speed", "m/s", "speed of the elastic precursor, mean over its rise, on its first way", |o| {
         o.precursor.map_or(f64::NAN, |p| p.speed)
+    }),
+    ("precursor_foot_speed", "m/s", "speed of its lowest level, a sixteenth of its rise", |o| {
+        o.precursor.map_or(f64::NAN, |p| p.foot_speed)
     }),
     ("precursor_u", "m/s", "particle velocity behind the precursor, on its first way", |o| {
         o.precursor.map_or(f64::NAN, |p| p.behind.velocity)
@@ -62,13 +65,13 @@ const MEASURED: [Number<PointOutcome>; 23] = [
     ("precursor_stress", "Pa", "-sigma_xx behind the precursor, on its first way", |o| {
         o.precursor.map_or(f64::NAN, |p| -p.behind.stress)
     }),
-    ("precursor_residual_mass", "", "miss of the precursor's jump condition of mass", |o| {
+    ("precursor_residual_mass", "", "miss of the conservation of mass in the precursor", |o| {
         o.precursor_residuals.map_or(f64::NAN, |r| r.mass)
     }),
-    ("precursor_residual_momentum", "", "miss of the precursor's jump condition of momentum", |o| {
+    ("precursor_residual_momentum", "", "miss of the conservation of momentum in the precursor", |o| {
         o.precursor_residuals.map_or(f64::NAN, |r| r.momentum)
     }),
-    ("precursor_residual_energy", "", "miss of the precursor's jump condition of energy", |o| {
+    ("precursor_residual_energy", "", "miss of the conservation of energy in the precursor", |o| {
         o.precursor_residuals.map_or(f64::NAN, |r| r.energy)
     }),
     ("u_p_effective", "m/s", "u_p that the ends of the window imposed", |o| o.effective_particle_velocity),
@@ -143,7 +146,21 @@ pub fn hugoniot(case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Tab
             "open or shut behind",
             outcomes.iter().map(|o| pores(o)).collect::<Vec<_>>(),
         ))
+        .with(Column::text(
+            "precursor",
+            "read, or why not",
+            outcomes.iter().map(|o| precursor(o)).collect::<Vec<_>>(),
+        ))
         .with(Column::text("status", "how the point ended", status))
+}
+
+/// Whether the precursor could be read, and why not.
+fn precursor(outcome: &PointOutcome) -> String {
+    match (&outcome.precursor, &outcome.precursor_missing) {
+        (Some(_), _) => "read".to_owned(),
+        (None, Some(reason)) => reason.clone(),
+        (None, None) => "the point did not start".to_owned(),
+    }
 }
 
 /// The averaged profile of a point.

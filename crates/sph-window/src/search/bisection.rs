@@ -32,6 +32,8 @@ use serde::{Deserialize, Serialize};
 const END: f64 = 2.0;
 /// Times that a bracket may be moved before the search gives up.
 const MOVES: u32 = 6;
+/// Farther from the front's own speed on its way than this part of it a bracket has run away: the slopes are noise.
+const AWAY: f64 = 0.75;
 
 /// Settings of the bisection.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -190,6 +192,8 @@ pub struct Bisector {
     round: u32,
     moves: u32,
     bracket: (f64, f64),
+    /// u_s on the way of the front to its place [m/s].
+    speed: f64,
     /// The bracket as it was at the start of the round.
     whole: (f64, f64),
     outlet_velocity: f64,
@@ -257,6 +261,7 @@ impl Bisector {
         self.book(look, around, Stage::Approach, None, Decision::Saved);
         let middle = speed - around.particle_velocity;
         let half = settings.half_width * speed;
+        self.speed = speed;
         self.bracket = settings.bracket.unwrap_or(((middle - half).max(0.0), middle + half));
         Some(self.begin_round(look))
     }
@@ -304,14 +309,22 @@ impl Bisector {
         Order::Restore(self.outlet_velocity)
     }
 
-    /// The result stands at an end of the bracket of this round, and that end is not zero.
+    /// The result stands at an end of the bracket of this round; an outlet that stands is no result at all.
     fn is_cut_off(&self, tolerance: f64) -> bool {
         let low = self.bracket.0 - self.whole.0 < END * tolerance && self.whole.0 > 0.0;
-        low || self.whole.1 - self.bracket.1 < END * tolerance
+        low || self.whole.1 - self.bracket.1 < END * tolerance || self.bracket.0 <= 0.0
+    }
+
+    /// The bracket is far from the speed that the front had on its way.
+    fn has_run_away(&self, particle_velocity: f64) -> bool {
+        let seen = self.speed - particle_velocity;
+        let distance = (self.bracket.0 - seen).max(seen - self.bracket.1);
+        distance > AWAY * self.speed
     }
 
     /// Goes on beyond the end of the bracket where the result stands.
     fn move_on(&mut self, look: &Look, around: &Surroundings, drift: f64, tolerance: f64) -> Order {
+        let stands = self.bracket.0 <= 0.0;
         let width = self.whole.1 - self.whole.0;
         let margin = 2.0 * END * tolerance;
         self.bracket = if self.bracket.0 - self.whole.0 < END * tolerance {
@@ -322,7 +335,7 @@ impl Bisector {
         self.whole = self.bracket;
         self.moves += 1;
         self.book(look, around, Stage::Trial, Some(drift), Decision::Moved);
-        if self.moves > MOVES {
+        if stands || self.moves > MOVES || self.has_run_away(around.particle_velocity) {
             return Order::GiveUp;
         }
         self.begin(self.start, look.particle_steps);
@@ -444,6 +457,25 @@ mod tests {
         let settings = Bisection { bracket: Some((0.0, 20.0)), tolerance: 8.0, rounds: 1, ..settings };
         let (bisector, found) = search(&settings, 0.0);
         assert_eq!(found, None, "{:?}", bisector.audit().last());
+    }
+
+    /// Slopes of pure noise, as in a window of a few cells: the bracket does not wander off to a result.
+    #[test]
+    fn a_bracket_that_runs_away_is_given_up() {
+        let settings = Bisection { rounds: 1, ..Bisection::default() };
+        for noise in [3e4, -3e4] {
+            let (bisector, found) = search(&settings, noise);
+            let moved = bisector.audit().iter().filter(|t| t.decision == Decision::Moved).count();
+            println!("{noise}: {found:?} after {moved} moves");
+            assert!(found.is_none_or(|u_s| (u_s / SHOCK - 1.0).abs() < 0.6), "{found:?}");
+        }
+        let mut bisector = Bisector { speed: SHOCK, whole: (100.0, 140.0), ..Bisector::default() };
+        bisector.bracket = (60.0, 104.0);
+        assert!(!bisector.has_run_away(PISTON));
+        bisector.bracket = (1396.0, 1440.0);
+        assert!(bisector.has_run_away(PISTON));
+        (bisector.bracket, bisector.whole) = ((0.0, 0.5), (0.0, 40.0));
+        assert!(bisector.is_cut_off(1.0), "an outlet that stands");
     }
 
     #[test]

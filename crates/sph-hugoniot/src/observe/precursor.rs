@@ -251,6 +251,7 @@ mod tests {
                 internal_energy: level.energy,
                 fluctuation_energy: 0.0,
                 fluctuation_stress: 0.0,
+                fluctuation_energy_flux: 0.0,
             }
         };
         let means = (0..48).map(|k| state((k as f64 + 0.5) * 0.5 * CELL)).collect();

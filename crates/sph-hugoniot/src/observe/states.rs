@@ -67,6 +67,7 @@ impl MeanState {
             internal_energy: mix(|s| s.internal_energy),
             fluctuation_energy: mix(|s| s.fluctuation_energy),
             fluctuation_stress: mix(|s| s.fluctuation_stress),
+            fluctuation_energy_flux: mix(|s| s.fluctuation_energy_flux),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::outcome::PointOutcome;
 pub(super) type Number<Row> = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
 
 /// What is measured of a point.
-const MEASURED: [Number<PointOutcome>; 23] = [
+const MEASURED: [Number<PointOutcome>; 24] = [
     ("u_p", "m/s", "particle velocity behind the front, imposed", |o| o.particle_velocity),
     ("u_s", "m/s", "shock velocity relative to the medium ahead, from the front's way", |o| o.shock_velocity),
     ("u_s_error", "m/s", "uncertainty of u_s: batch means over whole cells, and slow drift", |o| {

@@ -134,6 +134,12 @@ impl Case {
         schemes.iter().flat_map(of_scheme).collect()
     }
 
+    /// All `schemes` at all `resolutions`, of one variant of a suite's problem.
+    pub fn grid_of(suite: &str, variant: &str, schemes: &[SchemeName], resolutions: &[u32]) -> Vec<Self> {
+        let grid = Self::grid(suite, schemes, resolutions).into_iter();
+        grid.map(|case| case.of_variant(variant)).collect()
+    }
+
     /// Whether two runs differ in resolution only: their errors make an order of convergence.
     pub fn is_kin_of(&self, other: &Self) -> bool {
         (&self.suite, &self.variant, self.scheme) == (&other.suite, &other.variant, other.scheme)

@@ -108,7 +108,8 @@ fn missed_line(row: &Row) -> String {
     let value = Significant(row.value);
     let variant = if row.variant.is_empty() { String::new() } else { format!("{}, ", row.variant) };
     let scheme = row.scheme.title();
-    format!("{}: {variant}{scheme}, {n}: {} = {value:.4} {}; {gate}", row.suite, row.metric, row.unit)
+    let unit = if row.unit == "-" { String::new() } else { format!(" {}", row.unit) };
+    format!("{}: {variant}{scheme}, {n}: {} = {value:.4}{unit}; {gate}", row.suite, row.metric)
 }
 
 fn suite_section(

@@ -6,6 +6,7 @@ use sph_io::Color;
 use sph_io::field_image::{Cell, ColorMap, FieldImage};
 use sph_io::plot::{Annotation, Axis, Figure, Series};
 
+use crate::case::SchemeName;
 use crate::error::ValidateError;
 use crate::metric::Metric;
 use crate::outcome::{Field, Outcome};
@@ -101,6 +102,24 @@ fn shown<'a>(outcomes: &[&'a Outcome]) -> Vec<&'a Outcome> {
         below.or_else(|| kin.iter().copied().min_by_key(|o| o.case.n))
     };
     of_kin.filter_map(best).collect()
+}
+
+/// The outcomes of a variant.
+pub fn of_variant<'a>(outcomes: &[&'a Outcome], variant: &str) -> Vec<&'a Outcome> {
+    outcomes.iter().copied().filter(|outcome| outcome.case.variant == variant).collect()
+}
+
+/// The points of a curve of all runs of each scheme, as marks.
+pub fn marks_by_scheme(mut figure: Figure, outcomes: &[&Outcome], curve: &str) -> Figure {
+    for scheme in SchemeName::ALL {
+        let of_scheme = outcomes.iter().filter(|outcome| outcome.case.scheme == scheme);
+        let points: Vec<(f64, f64)> =
+            of_scheme.flat_map(|outcome| outcome.curve(curve).iter().copied()).collect();
+        if !points.is_empty() {
+            figure = figure.with(line(Series::points, scheme.title(), &points));
+        }
+    }
+    figure
 }
 
 /// Outcomes of the same variant and scheme together, in the order of their first ones, coarse to fine.

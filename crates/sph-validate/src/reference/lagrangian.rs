@@ -17,6 +17,8 @@
 //! Source: M. L. Wilkins, Meth. Comput. Phys. 3 (1964) 211; A. A. Samarskii and Yu. P. Popov, Difference methods for
 //! gas dynamics (1992).
 
+use sph_materials::Material;
+
 /// Pressure P(ρ, e) [Pa] from density [kg/m³] and specific internal energy [J/kg].
 pub type Pressure<'a> = &'a (dyn Fn(f64, f64) -> f64 + Sync);
 
@@ -31,6 +33,19 @@ pub struct Solid<'a> {
     pub yield_strength: f64,
     /// Upper estimate of the longitudinal sound speed [m/s]: sets the time step.
     pub sound_speed: f64,
+}
+
+impl<'a> Solid<'a> {
+    /// The strength of a material beside its equation of state; a twentieth above its sound speed at rest, for what
+    /// compression adds.
+    pub fn of(material: &Material, pressure: Pressure<'a>) -> Self {
+        Self {
+            pressure,
+            shear_modulus: material.strength.shear_modulus(),
+            yield_strength: material.strength.yield_strength(),
+            sound_speed: 1.05 * material.longitudinal_sound_speed(material.reference_density, 0.0),
+        }
+    }
 }
 
 /// Shape of the space.

@@ -82,8 +82,7 @@ impl Suite for Acoustic {
         };
         let grid = |problem: &Problem| {
             let schemes = if problem.closed { &[SchemeName::TkcHancock] } else { &SchemeName::ALL[..] };
-            let grid = Case::grid("acoustic", schemes, resolutions).into_iter();
-            grid.map(|case| case.of_variant(problem.variant)).collect::<Vec<_>>()
+            Case::grid_of("acoustic", problem.variant, schemes, resolutions)
         };
         problems.into_iter().flat_map(grid).collect()
     }

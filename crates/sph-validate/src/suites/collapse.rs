@@ -54,8 +54,7 @@ impl Suite for Collapse {
             Tier::Full => &[10, 20, 40],
         };
         let of_variant = |(variant, _, _): &(&str, f64, f64)| {
-            let cases = Case::grid("collapse", &[SchemeName::TkcHancock], resolutions);
-            cases.into_iter().map(|case| case.of_variant(variant)).collect::<Vec<_>>()
+            Case::grid_of("collapse", variant, &[SchemeName::TkcHancock], resolutions)
         };
         VARIANTS.iter().flat_map(of_variant).collect()
     }

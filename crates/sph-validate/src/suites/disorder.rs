@@ -50,8 +50,7 @@ impl Suite for Disorder {
             Tier::Full => &[100, 200, 400],
         };
         let of_variant = |(variant, _, _): &(&str, f64, bool)| {
-            let cases = Case::grid("disorder", &[SchemeName::TkcHancock], resolutions);
-            cases.into_iter().map(|case| case.of_variant(variant)).collect::<Vec<_>>()
+            Case::grid_of("disorder", variant, &[SchemeName::TkcHancock], resolutions)
         };
         VARIANTS.iter().flat_map(of_variant).collect()
     }

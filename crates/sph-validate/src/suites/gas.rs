@@ -110,8 +110,7 @@ impl Suite for Gas {
                 "sod" => &[SchemeName::Csph, SchemeName::TkcHancock],
                 _ => &[SchemeName::TkcHancock],
             };
-            let grid = Case::grid("gas", schemes, resolutions).into_iter();
-            grid.map(|case| case.of_variant(problem.variant)).collect::<Vec<_>>()
+            Case::grid_of("gas", problem.variant, schemes, resolutions)
         };
         PROBLEMS.iter().flat_map(grid).collect()
     }
@@ -136,8 +135,7 @@ impl Suite for Gas {
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         let mut pictures = Vec::new();
         for problem in &PROBLEMS {
-            let of: Vec<&Outcome> =
-                outcomes.iter().copied().filter(|o| o.case.variant == problem.variant).collect();
+            let of = plots::of_variant(outcomes, problem.variant);
             if of.is_empty() {
                 continue;
             }

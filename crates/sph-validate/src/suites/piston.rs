@@ -129,10 +129,7 @@ impl Suite for Piston {
             Tier::Quick => &[100, 200],
             Tier::Full => &[100, 200, 400],
         };
-        let cases = |variant| {
-            let grid = Case::grid("piston", &SchemeName::ALL, resolutions).into_iter();
-            grid.map(move |case| case.of_variant(variant))
-        };
+        let cases = |variant| Case::grid_of("piston", variant, &SchemeName::ALL, resolutions);
         self.variants().into_iter().flat_map(cases).collect()
     }
 
@@ -166,8 +163,7 @@ impl Suite for Piston {
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         let mut pictures = plots::convergences(&self.about(), outcomes);
         for variant in self.variants() {
-            let of_problem = outcomes.iter().copied().filter(|o| o.case.variant == variant);
-            let of_problem: Vec<&Outcome> = of_problem.collect();
+            let of_problem = plots::of_variant(outcomes, variant);
             if !of_problem.is_empty() {
                 let what = if self.user.is_some() { variant.to_owned() } else { format!("in {variant}") };
                 pictures.push(profile_picture(variant, &what, &self.setup(variant)?, &of_problem)?);

@@ -103,8 +103,7 @@ impl Suite for Shells {
                 Filling::Square => &SchemeName::ALL,
                 _ => &[SchemeName::Csph, SchemeName::TkcHancock],
             };
-            let grid = Case::grid("shells", schemes, resolutions).into_iter();
-            grid.map(|case| case.of_variant(problem.variant)).collect::<Vec<_>>()
+            Case::grid_of("shells", problem.variant, schemes, resolutions)
         };
         PROBLEMS.iter().flat_map(grid).collect()
     }
@@ -141,8 +140,7 @@ impl Suite for Shells {
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         let mut pictures = Vec::new();
         for problem in &PROBLEMS {
-            let of: Vec<&Outcome> =
-                outcomes.iter().copied().filter(|o| o.case.variant == problem.variant).collect();
+            let of = plots::of_variant(outcomes, problem.variant);
             if of.is_empty() {
                 continue;
             }
@@ -257,12 +255,7 @@ impl Reading {
 /// The shell on the mesh.
 fn reference(problem: &Problem, material: &Material) -> Reading {
     let pressure = |density: f64, energy: f64| material.pressure(density, energy);
-    let solid = Solid {
-        pressure: &pressure,
-        shear_modulus: material.strength.shear_modulus(),
-        yield_strength: material.strength.yield_strength(),
-        sound_speed: 1.05 * material.longitudinal_sound_speed(material.reference_density, 0.0),
-    };
+    let solid = Solid::of(material, &pressure);
     let d = problem.dimensions();
     let symmetry = if d == 3 { Symmetry::Spherical } else { Symmetry::Cylindrical };
     let scheme = Scheme { symmetry, ends: Ends::Free, cfl: 0.7, viscosity: Viscosity::default() };

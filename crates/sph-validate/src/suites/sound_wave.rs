@@ -232,12 +232,7 @@ impl Reference {
     fn of(setup: &Setup, duration: f64) -> Self {
         let material = &setup.material;
         let pressure: Pressure<'_> = &|density, energy| material.pressure(density, energy);
-        let solid = Solid {
-            pressure,
-            shear_modulus: material.strength.shear_modulus(),
-            yield_strength: material.strength.yield_strength(),
-            sound_speed: 1.05 * material.longitudinal_sound_speed(material.reference_density, 0.0),
-        };
+        let solid = Solid::of(material, pressure);
         Self::compute(setup, solid, material.reference_density, duration)
     }
 

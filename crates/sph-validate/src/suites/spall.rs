@@ -62,10 +62,8 @@ impl Suite for Spall {
             Tier::Quick => &[25, 50],
             Tier::Full => &[25, 50, 100, 200],
         };
-        let of_variant = |variant: &&str| {
-            let cases = Case::grid("spall", &[SchemeName::TkcHancock], resolutions);
-            cases.into_iter().map(|case| case.of_variant(variant)).collect::<Vec<_>>()
-        };
+        let of_variant =
+            |variant: &&str| Case::grid_of("spall", variant, &[SchemeName::TkcHancock], resolutions);
         ["cutoff", "voids"].iter().flat_map(of_variant).collect()
     }
 

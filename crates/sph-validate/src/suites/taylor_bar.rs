@@ -120,8 +120,7 @@ impl Suite for TaylorBar {
                 (Tier::Full, _) => &[2, 4, 6],
             };
             let schemes = [SchemeName::Csph, SchemeName::TkcHancock];
-            let grid = Case::grid("taylor-bar", &schemes, resolutions).into_iter();
-            grid.map(|case| case.of_variant(problem.variant)).collect::<Vec<_>>()
+            Case::grid_of("taylor-bar", problem.variant, &schemes, resolutions)
         };
         PROBLEMS.iter().flat_map(grid).collect()
     }
@@ -143,8 +142,7 @@ impl Suite for TaylorBar {
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         let mut pictures = Vec::new();
         for problem in &PROBLEMS {
-            let of: Vec<&Outcome> =
-                outcomes.iter().copied().filter(|o| o.case.variant == problem.variant).collect();
+            let of = plots::of_variant(outcomes, problem.variant);
             if of.is_empty() {
                 continue;
             }

@@ -72,11 +72,8 @@ impl Suite for Vibration {
             Tier::Quick => &[5],
             Tier::Full => &[5, 10, 20],
         };
-        let grid = |variant: &'static str| {
-            let grid = Case::grid("vibration", &SchemeName::ALL, resolutions).into_iter();
-            grid.map(move |case| case.of_variant(variant))
-        };
-        grid("ring").chain(grid("plate")).collect()
+        let grid = |variant: &'static str| Case::grid_of("vibration", variant, &SchemeName::ALL, resolutions);
+        ["ring", "plate"].into_iter().flat_map(grid).collect()
     }
 
     fn work(&self, case: &Case) -> f64 {
@@ -111,7 +108,7 @@ impl Suite for Vibration {
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         let mut pictures = Vec::new();
         for (variant, label) in [("ring", "1-D mesh"), ("plate", "Timoshenko's period")] {
-            let of: Vec<&Outcome> = outcomes.iter().copied().filter(|o| o.case.variant == variant).collect();
+            let of = plots::of_variant(outcomes, variant);
             let Some(first) = of.first() else { continue };
             let figure = Figure::new(
                 format!("Vibrating {variant}"),

@@ -93,16 +93,9 @@ impl WindowSolid {
             Some(user) => format!("Moving window, {}: shock velocity", user.name),
             None => "Solid copper in the moving window: shock velocity".into(),
         };
-        let mut figure = Figure::new(title, Axis::new("u_p [m/s]"), Axis::new("u_s [m/s]"))
+        let figure = Figure::new(title, Axis::new("u_p [m/s]"), Axis::new("u_s [m/s]"));
+        let figure = plots::marks_by_scheme(figure, outcomes, "velocity")
             .with(plots::line(Series::dashed, "exact", &exact).with_color(plots::BLACK));
-        for scheme in SchemeName::ALL {
-            let of_scheme = outcomes.iter().filter(|o| o.case.scheme == scheme);
-            let points: Vec<(f64, f64)> =
-                of_scheme.filter_map(|o| o.curve("velocity").first().copied()).collect();
-            if !points.is_empty() {
-                figure = figure.with(plots::line(Series::points, scheme.title(), &points));
-            }
-        }
         Ok(Picture {
             name: "window-solid".into(),
             caption:
@@ -147,8 +140,7 @@ impl Suite for WindowSolid {
             // Printed, the second scheme costs four times the third.
             let schemes: &[SchemeName] =
                 if name == "200" { &SchemeName::ALL } else { &[SchemeName::Csph, SchemeName::TkcHancock] };
-            let grid = Case::grid("window-solid", schemes, resolutions).into_iter();
-            grid.map(|case| case.of_variant(name)).collect::<Vec<_>>()
+            Case::grid_of("window-solid", name, schemes, resolutions)
         };
         variants.iter().flat_map(grid).collect()
     }

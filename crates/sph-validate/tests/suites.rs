@@ -29,6 +29,9 @@ fn gates_pass(cases: &[Case]) -> Report {
     report
 }
 
+/// Suites whose figures are bounds at each resolution, without an order: two resolutions do where a run is long.
+const WITHOUT_ORDER: [&str; 1] = ["window-porous"];
+
 /// Each suite in both tiers: its own name in its runs, no run twice, three resolutions or more in the full tier, and
 /// gates of what must be conserved.
 #[test]
@@ -44,7 +47,8 @@ fn suites_are_as_they_should_be() {
                 assert!(suite.work(case) > 0.0, "{case}");
                 assert_eq!(cases.iter().filter(|other| *other == case).count(), 1, "{case} twice");
                 let kin = cases.iter().filter(|other| other.is_kin_of(case)).count();
-                assert!(tier == Tier::Quick || kin >= 3, "{case}: {kin} resolutions show no order");
+                let least = if WITHOUT_ORDER.contains(&about.name) { 2 } else { 3 };
+                assert!(tier == Tier::Quick || kin >= least, "{case}: {kin} resolutions show no order");
                 for metric in [Conservation::MASS, Conservation::MOMENTUM, Conservation::ENERGY] {
                     assert!(gates.of_figure(case, &metric.name, 0.0).is_some(), "{case}: {}", metric.name);
                 }

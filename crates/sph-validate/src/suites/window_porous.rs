@@ -152,9 +152,9 @@ impl Suite for WindowPorous {
         if let Differs::Smoothing(smoothing) = problem.differs {
             solver.smoothing = smoothing;
         }
-        let without = Settings { volume_consistency: None, ..solver.clone() };
+        let without = Settings { volume_consistency: None, ..solver };
         let mut window =
-            Window::new(sample.clone(), vec![copper.clone()], solver, settings.clone()).map_err(fault)?;
+            Window::new(sample.clone(), vec![copper.clone()], solver, settings).map_err(fault)?;
         let means = advance(case, &mut window, watch, FED_CELLS * CELL)?;
         let mut measurements = measure(&window, &means, [low, high]);
         if problem.differs == Differs::Precursor {
@@ -262,7 +262,7 @@ fn sample(n: u32, density: f64) -> Result<FeedSample<Dim2>, WindowError> {
 fn jittered(sample: &FeedSample<Dim2>, amplitude: f64) -> Result<FeedSample<Dim2>, WindowError> {
     let mut particles = sample.particles().clone();
     disorder::shake(&mut particles, amplitude);
-    let cell = sample.cell().clone();
+    let cell = *sample.cell();
     for axis in 0..2 {
         let (lower, period) = (cell.lower[axis], cell.period(axis));
         particles.position[axis].iter_mut().for_each(|x| *x = lower + (*x - lower).rem_euclid(period));

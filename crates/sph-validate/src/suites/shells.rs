@@ -1,6 +1,7 @@
 //! Shells that collapse to other radii, on another lattice, of another metal, and in space.
 //!
-//! R0 = 80 mm, R1 = 100 mm, n particles across the wall (D0 = 20 mm / n), both surfaces free, θ = 0.5, u = -U0 (R0/r)^(d-1).
+//! R0 = 80 mm, R1 = 100 mm, n particles across the wall (D0 = 20 mm / n), both surfaces free, u = -U0 (R0/r)^(d-1), θ = 0.5, in the
+//! plane 0.65 where the inner layers part by 1.6 and more (`aluminum-50`, `beryllium-40`).
 //! U0 is the velocity that stops a rigid-plastic shell at the radius in the name of the variant:
 //!
 //! * `aluminum-60`, `aluminum-50`: Verney's aluminum, rings of particles;
@@ -38,7 +39,11 @@ use crate::watch::Watch;
 
 const INNER: f64 = 0.08;
 const OUTER: f64 = 0.1;
+/// Smoothing of a wall that thickens little.
 const SMOOTHING: f64 = 0.5;
+/// Smoothing of a wall whose inner layers part by 1.6 and more: at θ = 0.5 a kernel reaches 2 D, and at a stretch of 2 the
+/// layers would lose each other.
+const WIDE_SMOOTHING: f64 = 0.65;
 const ZONES: usize = 400;
 /// How long the reading must have risen again [s].
 const AFTER_STOP: f64 = 6e-6;
@@ -180,6 +185,12 @@ impl Problem {
         PROBLEMS.iter().find(|problem| problem.variant == case.variant).unwrap_or(&PROBLEMS[0])
     }
 
+    /// By how much the layers at the inner surface part; in the plane, where what is lost around is gained across.
+    fn smoothing(&self) -> f64 {
+        let stretch = if self.stop > 0.0 { INNER / self.stop } else { 1.2 };
+        if self.dimensions() == 2 && stretch >= 1.6 { WIDE_SMOOTHING } else { SMOOTHING }
+    }
+
     /// 2 around an axis, 3 around a point.
     fn dimensions(&self) -> i32 {
         if self.filling == Filling::Cubic { 3 } else { 2 }
@@ -285,7 +296,7 @@ fn run<D: SolidDimension>(
     let d = problem.dimensions();
     let mut reading = Reading::new(d, mean_power(&particles, d));
     let mut settings = case.scheme.settings();
-    settings.smoothing = SMOOTHING;
+    settings.smoothing = problem.smoothing();
     let mut run = Run::new(case, watch, Domain::open(), material, particles, settings)?;
     while !reading.is_over(run.simulation.time()) {
         if run.simulation.time() >= LATEST_STOP {

@@ -148,7 +148,13 @@ impl Matter {
         failed: &'a [bool],
         distension: &'a [f64],
     ) -> Eight<'a, L> {
-        let numbers = if self.numbers.len() == 1 {
+        Eight { material, failed, distension, numbers: self.numbers(material) }
+    }
+
+    /// Numbers of the materials of eight particles, or as many as there are.
+    #[inline(always)]
+    pub(crate) fn numbers<L: Lanes>(&self, material: &[u16]) -> Numbers<L> {
+        if self.numbers.len() == 1 {
             Numbers::splat(&self.numbers[0])
         } else {
             let mut of = [&self.numbers[material[0] as usize]; LANES];
@@ -156,8 +162,7 @@ impl Matter {
                 of[l] = &self.numbers[material[l] as usize];
             }
             gather(of)
-        };
-        Eight { material, failed, distension, numbers }
+        }
     }
 
     /// Pressure [Pa] with the failure rule, and ρ c_b² [Pa].

@@ -74,7 +74,7 @@ impl<D: SolidDimension> LaneKernel for PrepareTile<'_, D> {
 #[cold]
 fn fill(record: &mut [Line], rows: &mut [Line], lane: usize) {
     record.iter_mut().for_each(|line| line.0 = [0.0; LANES]);
-    for row in 0..Row::LEAST_EIGENVALUE {
+    for row in 0..Row::COUNT_BEFORE {
         rows[row].0[lane] = 0.0;
     }
     rows[Row::LONGITUDINAL].0[lane] = 1.0;

@@ -67,19 +67,15 @@ impl Sides {
     }
 }
 
-/// Offsets in the record of time-centring, one line: position, volume, then δ.
+/// Offsets in the record of time-centring: that of the second pass, where the impedances of marked particles make room for δ
+/// once the contacts are solved.
 pub struct Centered;
 
 impl Centered {
-    /// V = m/ρ [m^d].
-    #[inline(always)]
-    pub const fn volume<D: Dimension>() -> usize {
-        D::COUNT
-    }
     /// First component of δ [m/s], by which the half step of the velocity is corrected.
     #[inline(always)]
     pub const fn delta<D: Dimension>() -> usize {
-        D::COUNT + 1
+        Sides::longitudinal::<D>()
     }
 }
 
@@ -109,30 +105,33 @@ impl Sums {
     }
 }
 
-/// Rows of a block's scratch: row r holds one number of each of the eight particles of the block.
+/// Rows of a block's scratch: row r holds one number of each of the eight particles of the block. What only the first pass
+/// reads makes room for what it finds.
 pub struct Row;
 
 impl Row {
-    /// 1/ρ [m³/kg].
+    /// 1/ρ [m³/kg]; after the first pass, half a step later.
     pub const INVERSE_DENSITY: usize = 0;
-    /// ρ c_b² [Pa], zero where the state is frozen.
-    pub const BULK_MODULUS: usize = 1;
-    /// Shear modulus G [Pa], zero where the state is frozen or the particle has failed.
-    pub const SHEAR_MODULUS: usize = 2;
-    /// Yield strength Y [Pa].
-    pub const YIELD_STRENGTH: usize = 3;
     /// Pressure P [Pa].
-    pub const PRESSURE: usize = 4;
+    pub const PRESSURE: usize = 1;
     /// 1 where the particle moves freely, 0 where its velocity is imposed.
-    pub const FREE: usize = 5;
+    pub const FREE: usize = 2;
     /// ρ c_l [kg/(m² s)].
-    pub const LONGITUDINAL: usize = 6;
-    /// ρ c_t [kg/(m² s)].
-    pub const TRANSVERSE: usize = 7;
-    /// Least eigenvalue of L [-].
-    pub const LEAST_EIGENVALUE: usize = 8;
+    pub const LONGITUDINAL: usize = 3;
+    /// ρ c_t [kg/(m² s)], up to the first pass.
+    pub const TRANSVERSE: usize = 4;
+    /// ρ c_b² [Pa], zero where the state is frozen; up to the first pass.
+    pub const BULK_MODULUS: usize = 5;
+    /// Shear modulus G [Pa], zero where the state is frozen or the particle has failed; up to the first pass.
+    pub const SHEAR_MODULUS: usize = 6;
+    /// Yield strength Y [Pa], up to the first pass.
+    pub const YIELD_STRENGTH: usize = 7;
+    /// Rows that the material and the state fill.
+    pub const COUNT_BEFORE: usize = 8;
+    /// Least eigenvalue of L [-], from the first pass on.
+    pub const LEAST_EIGENVALUE: usize = Self::TRANSVERSE;
 
-    /// First row of L.
+    /// First row of L, from the first pass on.
     #[inline(always)]
     pub const fn gradient_matrix<D: SolidDimension>() -> usize {
         Self::LEAST_EIGENVALUE + 1
@@ -140,6 +139,7 @@ impl Row {
     /// Number of rows.
     #[inline(always)]
     pub const fn count<D: SolidDimension>() -> usize {
-        Self::gradient_matrix::<D>() + D::STRESS_COUNT
+        let after = Self::gradient_matrix::<D>() + D::STRESS_COUNT;
+        if after > Self::COUNT_BEFORE { after } else { Self::COUNT_BEFORE }
     }
 }

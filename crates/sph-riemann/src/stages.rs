@@ -7,7 +7,7 @@ use sph_core::neighbors::{DisplacementRange, NeighborLists, Reach, TILE};
 
 use crate::dimension::SolidDimension;
 use crate::error::StepError;
-use crate::pass::{Deltas, Pass, Smoothing, TilePairs, collect};
+use crate::pass::{Deltas, Pass, Sizes, Smoothing, TilePairs, collect};
 use crate::record::Row;
 use crate::scheme::{FaceClosure, SurfaceTreatment};
 use crate::simulation::{Simulation, StepReport};
@@ -18,16 +18,18 @@ use crate::{prepare, surface, volume};
 /// Arrays that live as long as the neighbour lists.
 #[derive(Default)]
 pub(crate) struct Scratch {
-    /// Records of the first pass; then, those of time-centring.
+    /// Records of the first pass.
     state: Vec<Line>,
-    /// Records of the second pass.
+    /// Records of the second pass, and of time-centring.
     pub(crate) sides: Vec<Line>,
     pub(crate) rows: Vec<Line>,
     /// What pairs add up to.
     pub(crate) sums: Vec<Line>,
     /// What the pairs of each tile leave behind.
     pairs: Vec<TilePairs>,
+    /// Sizes of the particles that records show, if they are not all the same.
     size: Vec<f64>,
+    uniform_size: Option<f64>,
     rule: Vec<f64>,
     /// Face records, twice, where faces are closed.
     faces: [Vec<Line>; 2],
@@ -37,6 +39,10 @@ pub(crate) struct Scratch {
 }
 
 impl Scratch {
+    fn sizes(&self) -> Sizes<'_> {
+        self.uniform_size.map_or(Sizes::Each(&self.size), Sizes::Uniform)
+    }
+
     /// Bytes in use.
     pub(crate) fn bytes(&self) -> usize {
         let faces: usize = self.faces.iter().map(Vec::len).sum();
@@ -77,10 +83,15 @@ impl<D: SolidDimension> Simulation<D> {
         s.rows.resize(padded / LANES * Row::count::<D>(), Line::default());
         s.sums.resize(padded * D::SUM_LINES, Line::default());
         s.pairs.resize(tiles, TilePairs::default());
+        let size = &self.particles.size;
+        s.uniform_size =
+            Some(size.first().copied().unwrap_or(1.0)).filter(|first| size.iter().all(|s| s == first));
         s.size.clear();
-        s.size.extend_from_slice(&self.particles.size);
-        s.size.resize(padded, self.particles.size.first().copied().unwrap_or(1.0));
-        s.size.extend(self.lists.halo().owner.iter().map(|&o| self.particles.size[o as usize]));
+        if s.uniform_size.is_none() {
+            s.size.extend_from_slice(size);
+            s.size.resize(padded, size[0]);
+            s.size.extend(self.lists.halo().owner.iter().map(|&o| size[o as usize]));
+        }
         s.reports.resize(tiles, TileReport::default());
         s.steps.resize(tiles, (0.0, 0));
     }
@@ -117,7 +128,7 @@ impl<D: SolidDimension> Simulation<D> {
     /// A pass that reads the given records.
     fn pass<'a>(&'a self, records: &'a [Line], surface: SurfaceTreatment, half_step: f64) -> Pass<'a, D> {
         let settings = &self.settings;
-        let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, &self.scratch.size);
+        let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, self.scratch.sizes());
         let instructions = self.instructions;
         Pass { lists: &self.lists, smoothing, surface, records, half_step, instructions }
     }
@@ -128,15 +139,17 @@ impl<D: SolidDimension> Simulation<D> {
         let mut sides = std::mem::take(&mut self.scratch.sides);
         let mut rows = std::mem::take(&mut self.scratch.rows);
         if self.settings.scheme.reconstructs() {
-            let s = &mut self.scratch;
-            let by_rule = surface::marks(&self.lists, &self.settings, &s.state, &s.size, &mut s.rule);
+            let mut rule = std::mem::take(&mut self.scratch.rule);
+            let s = &self.scratch;
+            let by_rule = surface::marks(&self.lists, &self.settings, &s.state, s.sizes(), &mut rule);
             let half_step = if self.settings.scheme.is_time_centered() { 0.5 * time_step } else { 0.0 };
             let s = &self.scratch;
             self.pass(&s.state, self.settings.surface, half_step).gradients(
-                by_rule.then_some(s.rule.as_slice()),
+                by_rule.then_some(rule.as_slice()),
                 &mut sides,
                 &mut rows,
             );
+            self.scratch.rule = rule;
         } else {
             let own = &mut sides[..padded * D::SIDES_LINES];
             prepare::piecewise_constant_sides::<D>(&self.scratch.state, &rows, own);
@@ -168,18 +181,16 @@ impl<D: SolidDimension> Simulation<D> {
         let deltas = Deltas {
             lists: &self.lists,
             pairs: &s.pairs,
-            sides: &s.sides,
             velocity: &self.particles.velocity,
             mass: &self.particles.mass,
             half_step: 0.5 * time_step,
         };
-        if !deltas.fill(&mut s.sums, &mut s.state) {
+        if !deltas.fill(&s.rows, &mut s.sums, &mut s.sides) {
             return;
         }
-        self.lists.halo().refresh(&mut s.state, D::STATE_LINES, self.lists.n_padded());
         let mut sums = std::mem::take(&mut s.sums);
         let mut pairs = std::mem::take(&mut s.pairs);
-        self.pass(&self.scratch.state, self.settings.surface, 0.0).centering(&mut sums, &mut pairs);
+        self.pass(&self.scratch.sides, self.settings.surface, 0.0).centering(&mut sums, &mut pairs);
         let tiles = sums.par_chunks_mut(TILE * D::SUM_LINES).enumerate();
         tiles.for_each(|(t, own)| collect(&self.lists, &pairs, t, own));
         (self.scratch.sums, self.scratch.pairs) = (sums, pairs);

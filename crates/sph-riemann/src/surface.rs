@@ -13,6 +13,7 @@ use sph_core::matrix::SquareMatrix;
 use sph_core::neighbors::NeighborLists;
 
 use crate::dimension::SolidDimension;
+use crate::pass::Sizes;
 use crate::record::State;
 use crate::scheme::{Settings, SurfaceTreatment};
 
@@ -29,7 +30,7 @@ pub fn marks<D: SolidDimension>(
     lists: &NeighborLists<D>,
     settings: &Settings,
     state: &[Line],
-    size: &[f64],
+    sizes: Sizes<'_>,
     marks: &mut Vec<f64>,
 ) -> bool {
     let (rule, determinant_floor) = match settings.surface {
@@ -37,7 +38,7 @@ pub fn marks<D: SolidDimension>(
         SurfaceTreatment::Intended { determinant_floor } => (SurfaceRule::Intended, determinant_floor),
         SurfaceTreatment::None | SurfaceTreatment::SpectralCap { .. } => return false,
     };
-    let cloud = Cloud { lists, settings, state, size };
+    let cloud = Cloud { lists, settings, state, sizes };
     marks.resize(lists.n_padded(), 0.0);
     marks.par_iter_mut().enumerate().for_each(|(i, mark)| {
         *mark = 0.0;
@@ -64,7 +65,7 @@ struct Cloud<'a, D: SolidDimension> {
     lists: &'a NeighborLists<D>,
     settings: &'a Settings,
     state: &'a [Line],
-    size: &'a [f64],
+    sizes: Sizes<'a>,
 }
 
 impl<D: SolidDimension> Cloud<'_, D> {
@@ -77,7 +78,7 @@ impl<D: SolidDimension> Cloud<'_, D> {
     }
 
     fn smoothing_length(&self, i: usize, j: usize) -> f64 {
-        self.settings.smoothing * (self.size[i] + self.size[j])
+        self.settings.smoothing * (self.sizes.of(i) + self.sizes.of(j))
     }
 
     fn within_smoothing_length(&self, i: usize, j: usize) -> bool {

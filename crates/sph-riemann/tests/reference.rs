@@ -12,7 +12,7 @@ use sph_core::{Components, Dim2, Dim3, Vector};
 use sph_riemann::contact::acoustic::{Side, solve};
 use sph_riemann::dimension::symmetric;
 use sph_riemann::matter::Matter;
-use sph_riemann::pass::{Pass, Smoothing, TilePairs, collect};
+use sph_riemann::pass::{Pass, Sizes, Smoothing, TilePairs, collect};
 use sph_riemann::prepare::prepare;
 use sph_riemann::record::{Row, Sides, State, Sums};
 use sph_riemann::{Limiter, Settings, Simulation, SolidDimension, SurfaceTreatment};
@@ -47,7 +47,7 @@ impl<D: SolidDimension> Passes<D> {
         let instructions = InstructionSet::detect();
         prepare(simulation.particles(), &matter, instructions, &mut state, &mut rows);
         lists.halo().refresh(&mut state, D::STATE_LINES, padded);
-        let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, &size);
+        let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, Sizes::Each(&size));
         let pass = Pass { lists, smoothing, surface, records: &state, half_step: 0.0, instructions };
         pass.gradients(None, &mut sides, &mut rows);
         lists.halo().refresh(&mut sides, D::SIDES_LINES, padded);

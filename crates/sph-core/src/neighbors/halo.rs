@@ -41,6 +41,9 @@ impl<D: Dimension> Halo<D> {
                 (self.owner[source - n], self.shift[source - n])
             };
             let x = position[axis][owner as usize];
+            if x - period <= lower && x + period >= upper {
+                continue; // Too far from both sides: most are.
+            }
             for turn in (-turns..=turns).filter(|&turn| turn != 0) {
                 let image = x + turn as f64 * period;
                 if image > lower && image < upper {

@@ -25,6 +25,11 @@ pub(super) struct Search<'a, D: Dimension> {
     size_of: Vec<f64>,
     /// Place of each particle along the skew line [m].
     along: Vec<f64>,
+    /// The same for the particle that each sorted point shows, and the shift of the point along the line.
+    along_of: Vec<f64>,
+    shift_of: Vec<f64>,
+    /// Record and particle of each sorted point.
+    record_of: Vec<(u32, u32)>,
 }
 
 /// Direction of the line that decides who owns a pair: no two points of a lattice near each other lie across it.
@@ -49,8 +54,26 @@ impl<'a, D: Dimension> Search<'a, D> {
         let filled = |column: &[f64]| column.iter().copied().chain([FAR; LANES]).collect();
         let position = Components::from_fn(|a| filled(&points.position[a]));
         let size_of = points.index.iter().map(|&i| size[owner(i)]).chain([0.0; LANES]).collect();
-        let along = (0..n).map(|i| along::<D>(|a| of_particles[a][i])).collect();
-        Self { points, halo, size, reach, farthest, position, size_of, along }
+        let line: Vec<f64> = (0..n).map(|i| along::<D>(|a| of_particles[a][i])).collect();
+        let shift = |i: u32| (i as usize).checked_sub(n).map_or(0.0, |c| along::<D>(|a| halo.shift[c][a]));
+        let along_of = points.index.iter().map(|&i| line[owner(i)]).chain([0.0; LANES]).collect();
+        let shift_of = points.index.iter().map(|&i| shift(i)).chain([0.0; LANES]).collect();
+        let filling = (n.next_multiple_of(LANES) - n) as u32;
+        let record = |i: u32| if (i as usize) < n { i } else { i + filling };
+        let record_of = points.index.iter().map(|&i| (record(i), owner(i) as u32)).collect();
+        Self {
+            points,
+            halo,
+            size,
+            reach,
+            farthest,
+            position,
+            size_of,
+            along: line,
+            along_of,
+            shift_of,
+            record_of,
+        }
     }
 
     /// Lists of the particles of a tile, at the given positions.
@@ -73,6 +96,7 @@ impl<'a, D: Dimension> Search<'a, D> {
         let here = D::vector(|a| position[a][i]);
         let (own, factor) = (L::splat(self.size[i]), L::splat(self.reach.factor));
         let skin = L::splat(self.reach.skin);
+        let along = L::splat(self.along[i]);
         self.points.runs_near(here, self.farthest, |first, end| {
             for p in (first..end).step_by(LANES) {
                 let mut r2 = L::zero();
@@ -84,13 +108,31 @@ impl<'a, D: Dimension> Search<'a, D> {
                 let cut = reach + skin;
                 let of_run = if end - p < LANES { (1u8 << (end - p)) - 1 } else { u8::MAX };
                 let mut listed = r2.less_mask(cut * cut) & of_run;
+                if listed == 0 {
+                    continue;
+                }
                 let within = r2.less_mask(reach * reach);
+                let difference = (eight::<L>(&self.along_of, p) - along) + eight::<L>(&self.shift_of, p);
+                let mut owns = L::zero().less_mask(difference);
+                let mut ties = !owns & !difference.less_mask(L::zero()) & listed;
+                while ties != 0 {
+                    let lane = ties.trailing_zeros() as usize;
+                    ties &= ties - 1;
+                    owns |= u8::from(self.owns_tied(i, p + lane)) << lane;
+                    if self.points.index[p + lane] as usize == i {
+                        listed &= !(1 << lane); // The particle itself.
+                    }
+                }
                 while listed != 0 {
                     let lane = listed.trailing_zeros() as usize;
                     listed &= listed - 1;
-                    let j = self.points.index[p + lane];
-                    if j as usize != i {
-                        self.add(i, j, within >> lane & 1 == 1, lists);
+                    let (record, owner) = self.record_of[p + lane];
+                    lists.seen[owner as usize / TILE] = true;
+                    match (owns >> lane & 1 == 1, within >> lane & 1 == 1) {
+                        (true, true) => lists.owned.push(record),
+                        (true, false) => lists.owned_skin.push(record),
+                        (false, true) => lists.others.push(record),
+                        (false, false) => lists.others_skin.push(record),
                     }
                 }
             }
@@ -98,30 +140,16 @@ impl<'a, D: Dimension> Search<'a, D> {
         lists.append_skin();
     }
 
-    /// Adds point `j` to the lists of particle `i` as a record, and notes the tile that is seen.
-    #[inline(always)]
-    fn add(&self, i: usize, j: u32, within: bool, lists: &mut Neighbors) {
-        let n = self.size.len();
-        let copy = (j as usize).checked_sub(n);
-        let owner = copy.map_or(j, |c| self.halo.owner[c]) as usize;
-        let record = if copy.is_some() { j + (n.next_multiple_of(LANES) - n) as u32 } else { j };
-        lists.seen[owner / TILE] = true;
-        let shift = copy.map(|c| self.halo.shift[c]);
-        let difference = self.along[owner] - self.along[i] + shift.map_or(0.0, |s| along::<D>(|a| s[a]));
-        let owns = if difference != 0.0 {
-            difference > 0.0
-        } else if owner != i {
-            owner > i
-        } else {
-            // An image of the particle itself, straight across the skew line.
-            shift.is_some_and(|s| (0..D::COUNT).find(|&a| s[a] != 0.0).is_some_and(|a| s[a] > 0.0))
-        };
-        match (owns, within) {
-            (true, true) => lists.owned.push(record),
-            (true, false) => lists.owned_skin.push(record),
-            (false, true) => lists.others.push(record),
-            (false, false) => lists.others_skin.push(record),
+    /// Whether particle `i` owns the pair with sorted point `p`, which lies straight across the skew line.
+    #[cold]
+    fn owns_tied(&self, i: usize, p: usize) -> bool {
+        let owner = self.record_of[p].1 as usize;
+        if owner != i {
+            return owner > i;
         }
+        // An image of the particle itself.
+        let shift = (self.points.index[p] as usize).checked_sub(self.size.len()).map(|c| self.halo.shift[c]);
+        shift.is_some_and(|s| (0..D::COUNT).find(|&a| s[a] != 0.0).is_some_and(|a| s[a] > 0.0))
     }
 }
 

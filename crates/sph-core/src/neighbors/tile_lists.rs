@@ -9,6 +9,10 @@
 use crate::lanes::LANES;
 use crate::neighbors::TILE;
 
+/// Marks of particles that have no place in the buffer yet: none needed, and one needed.
+const UNMET: u16 = u16::MAX;
+const MET: u16 = u16::MAX - 1;
+
 /// Lists of the particles of one tile. Only a search fills them: every entry is below the number of records, every target
 /// below the number of targets, and pair loops rely on it.
 #[derive(Clone, Debug, Default)]
@@ -20,7 +24,7 @@ pub struct TileLists {
     /// Slots: the k-th neighbour of each of eight particles.
     slots: Vec<[u32; LANES]>,
     /// Places in the tile's buffer of the neighbours in the slots that list pairs once.
-    targets: Vec<[u32; LANES]>,
+    targets: Vec<[u16; LANES]>,
     /// Particles of other tiles that have a place in the buffer, ascending.
     foreign: Vec<u32>,
     /// Where other tiles have sums for particles of this one.
@@ -72,26 +76,51 @@ impl TileLists {
         self.n_own += LANES;
     }
 
-    /// Places in the buffer, once all blocks are there. `owner` tells the particle of a record.
+    /// Places in the buffer, once all blocks are there: own particles first, then the foreign ones in their order. `seen` has
+    /// the tiles that hold particles seen from here, ascending; `owner` tells the particle of a record.
     pub(super) fn set_targets(&mut self, tile: usize, seen: Vec<u32>, owner: impl Fn(u32) -> u32) {
-        let own = tile * TILE..tile * TILE + self.n_own;
-        let owners = |slot: &[u32; LANES]| slot.map(&owner);
-        let listed_once = || {
-            (0..self.n_blocks()).flat_map(|b| {
-                let first = self.start[b] as usize;
-                &self.slots[first..first + (self.once[b + 1] - self.once[b]) as usize]
-            })
+        // Of each particle of this tile and then of the tiles that are seen: its place in the buffer.
+        let mut places = vec![UNMET; (1 + seen.len()) * TILE];
+        let first_of = |of_tile: usize| match seen.iter().position(|&s| s as usize == of_tile) {
+            _ if of_tile == tile => 0,
+            found => (1 + found.expect("a neighbor is in a tile that is seen")) * TILE,
         };
-        let mut foreign: Vec<u32> =
-            listed_once().flat_map(owners).filter(|&o| !own.contains(&(o as usize))).collect();
-        foreign.sort_unstable();
-        foreign.dedup();
-        let place = |o: u32| match foreign.binary_search(&o) {
-            Ok(f) => (self.n_own + f) as u32,
-            Err(_) => o - own.start as u32,
+        let (mut of_tile, mut first) = (tile, 0);
+        let mut index = |particle: u32| {
+            // Neighbors come in runs of one tile.
+            if particle as usize / TILE != of_tile {
+                of_tile = particle as usize / TILE;
+                first = first_of(of_tile);
+            }
+            first + particle as usize % TILE
         };
-        let targets = listed_once().map(|slot| owners(slot).map(place)).collect();
-        (self.targets, self.foreign, self.seen) = (targets, foreign, seen);
+        let n_once = self.once[self.n_blocks()] as usize;
+        let mut met = Vec::with_capacity(n_once);
+        for b in 0..self.n_blocks() {
+            let first_slot = self.start[b] as usize;
+            for slot in &self.slots[first_slot..first_slot + (self.once[b + 1] - self.once[b]) as usize] {
+                let mut at = [0; LANES];
+                for l in 0..LANES {
+                    at[l] = index(owner(slot[l])) as u32;
+                    places[at[l] as usize] = MET;
+                }
+                met.push(at);
+            }
+        }
+        let (own, others) = places.split_at_mut(TILE);
+        own.iter_mut().enumerate().for_each(|(k, place)| *place = k as u16);
+        let mut foreign = Vec::new();
+        for (&t, places) in seen.iter().zip(others.chunks_exact_mut(TILE)) {
+            for (k, place) in places.iter_mut().enumerate() {
+                if *place == MET {
+                    *place = (self.n_own + foreign.len()) as u16;
+                    foreign.push((t as usize * TILE + k) as u32);
+                }
+            }
+        }
+        assert!(self.n_own + foreign.len() < MET as usize, "tile {tile} meets {} others", foreign.len());
+        self.targets = met.iter().map(|at| at.map(|at| places[at as usize])).collect();
+        (self.foreign, self.seen) = (foreign, seen);
         self.slots.shrink_to_fit();
     }
 
@@ -109,7 +138,7 @@ impl TileLists {
 
     /// The slots of a block that list pairs once, and the places of the neighbours in the tile's buffer.
     #[inline(always)]
-    pub fn pairs(&self, block: usize) -> (&[[u32; LANES]], &[[u32; LANES]]) {
+    pub fn pairs(&self, block: usize) -> (&[[u32; LANES]], &[[u16; LANES]]) {
         let targets = &self.targets[self.once[block] as usize..self.once[block + 1] as usize];
         (&self.block(block)[..targets.len()], targets)
     }
@@ -147,7 +176,8 @@ impl TileLists {
     /// Bytes that the lists take.
     pub fn bytes(&self) -> usize {
         let words = self.start.len() + self.once.len() + self.foreign.len() + self.seen.len();
-        (self.slots.len() + self.targets.len()) * size_of::<[u32; LANES]>()
+        self.slots.len() * size_of::<[u32; LANES]>()
+            + self.targets.len() * size_of::<[u16; LANES]>()
             + words * 4
             + self.incoming.len() * size_of::<Incoming>()
     }

@@ -20,8 +20,12 @@ pub trait SlopeLimiter: Copy + Send + Sync + 'static {
     /// ½ of the limited difference from d = Φ_j - Φ_i and g = ∇Φ·r_ji, in the unit of Φ.
     fn half<R: Real>(difference: R, gradient: R) -> R;
 
-    /// Φ_l and Φ_r of a contact from the values of both particles and what their gradients promise. The gradients are not
-    /// exactly zero: limiters that divide need one division for both sides.
+    /// What [`SlopeLimiter::sides`] wants of the gradients: once or twice what they promise.
+    const GRADIENT_MULTIPLE: f64 = 1.0;
+
+    /// Φ_l and Φ_r of a contact from the values of both particles and what their gradients promise, times
+    /// [`SlopeLimiter::GRADIENT_MULTIPLE`]. The gradients are not exactly zero: limiters that divide need one division for
+    /// both sides.
     #[inline(always)]
     fn sides<R: Real>(left: R, right: R, left_gradient: R, right_gradient: R) -> (R, R) {
         let difference = right - left;
@@ -121,15 +125,19 @@ impl SlopeLimiter for VanLeer {
         gradient * (t * (R::splat(-0.5).mul_add(t, R::one()))).max(R::zero())
     }
 
-    /// d/g_l and d/g_r from d/(g_l g_r).
+    const GRADIENT_MULTIPLE: f64 = 2.0;
+
+    /// With q = 2 g on each side, one division d/(q_l q_r) gives ½ t = d/q of both. Half the limited difference is
+    /// d (1 - ½ t) where 0 < t < 2: where the factor lies between zero and one.
     #[inline(always)]
     fn sides<R: Real>(left: R, right: R, left_gradient: R, right_gradient: R) -> (R, R) {
-        let (one, minus_half) = (R::one(), R::splat(-0.5));
-        let scale = (right - left) / (left_gradient * right_gradient);
-        let (l, r) = (scale * right_gradient, scale * left_gradient);
-        let half_l = (l * minus_half.mul_add(l, one)).max(R::zero());
-        let half_r = (r * minus_half.mul_add(r, one)).max(R::zero());
-        (left_gradient.mul_add(half_l, left), (-right_gradient).mul_add(half_r, right))
+        let (zero, one) = (R::zero(), R::one());
+        let minus_difference = left - right;
+        let scale = minus_difference / (left_gradient * right_gradient);
+        let (l, r) = (scale.mul_add(right_gradient, one), scale.mul_add(left_gradient, one));
+        let share_l = one.select_less(l, zero, l.max(zero));
+        let share_r = one.select_less(r, zero, r.max(zero));
+        ((-minus_difference).mul_add(share_l, left), minus_difference.mul_add(share_r, right))
     }
 }
 
@@ -183,7 +191,7 @@ mod tests {
             values.iter().flat_map(|&d| values.iter().flat_map(move |&l| values.map(|r| (d, l, r))))
         {
             let (left, right) = (0.25, 0.25 + d);
-            let both = VanLeer::sides(left, right, l, r);
+            let both = VanLeer::sides(left, right, 2.0 * l, 2.0 * r);
             let one = (left + VanLeer::half(right - left, l), right - VanLeer::half(right - left, r));
             let near = |a: f64, b: f64| (a - b).abs() <= 4.0 * f64::EPSILON * (b.abs() + d.abs());
             assert!(near(both.0, one.0) && near(both.1, one.1), "{d} {l} {r}: {both:?} {one:?}");

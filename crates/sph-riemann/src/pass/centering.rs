@@ -17,10 +17,11 @@ use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
 use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
+use super::gradient::CENTERING_EIGENVALUE;
 use super::sums::{TilePairs, add_to_buffer, collect};
 use super::{Pass, load_line, own_indices};
 use crate::dimension::{SolidDimension, dot};
-use crate::record::{Centered, Sides, Sums};
+use crate::record::{Centered, Row, Sides, Sums};
 
 /// The pass over one tile.
 pub(super) struct CenteringTile<'a, 'b, D: SolidDimension> {
@@ -36,8 +37,6 @@ pub struct Deltas<'a, D: SolidDimension> {
     pub lists: &'a NeighborLists<D>,
     /// What the pairs of each tile left behind.
     pub pairs: &'a [TilePairs],
-    /// Records of the contact pass.
-    pub sides: &'a [Line],
     /// Velocity at the start of the step [m/s].
     pub velocity: &'a D::AxisColumns,
     /// Mass [kg], per metre of depth in the plane.
@@ -47,39 +46,55 @@ pub struct Deltas<'a, D: SolidDimension> {
 }
 
 impl<D: SolidDimension> Deltas<'_, D> {
-    /// Collects the sums of the contact pass; then fills the records of time-centring, if any pair is marked. True if so.
-    pub fn fill(&self, sums: &mut [Line], records: &mut [Line]) -> bool {
+    /// Collects the sums of the contact pass; then writes δ into its records (`sides`), if any pair is marked. True if so.
+    /// `rows` are those of the first pass.
+    pub fn fill(&self, rows: &[Line], sums: &mut [Line], sides: &mut [Line]) -> bool {
         let needed = self.pairs.iter().any(TilePairs::has_marked);
-        let own = &mut records[..self.lists.n_padded() * D::STATE_LINES];
+        let own = &mut sides[..self.lists.n_padded() * D::SIDES_LINES];
         let tiles = sums
             .par_chunks_mut(TILE * D::SUM_LINES)
-            .zip(own.par_chunks_mut(TILE * D::STATE_LINES))
+            .zip(own.par_chunks_mut(TILE * D::SIDES_LINES))
+            .zip(rows.par_chunks(TILE_BLOCKS * Row::count::<D>()))
             .enumerate();
-        tiles.for_each(|(t, (sums, records))| {
+        tiles.for_each(|(t, ((sums, sides), rows))| {
             collect::<D>(self.lists, self.pairs, t, sums);
             if needed {
-                let of_tile = sums.chunks_exact(D::SUM_LINES).zip(records.chunks_exact_mut(D::STATE_LINES));
-                for (k, (sums, record)) in of_tile.enumerate() {
-                    self.particle(t * TILE + k, sums, &mut record[0].0);
+                for (b, rows) in rows.chunks_exact(Row::count::<D>()).enumerate() {
+                    for l in 0..LANES {
+                        if rows[Row::LEAST_EIGENVALUE].0[l] < CENTERING_EIGENVALUE {
+                            let k = b * LANES + l;
+                            let side = &mut sides[k * D::SIDES_LINES..(k + 1) * D::SIDES_LINES];
+                            self.particle(t * TILE + k, &sums[k * D::SUM_LINES].0, side);
+                        }
+                    }
                 }
             }
         });
+        if needed {
+            self.refresh_copies(sides);
+        }
         needed
     }
 
-    fn particle(&self, i: usize, sums: &[Line], record: &mut [f64; LANES]) {
-        let side = |k: usize| self.sides[i * D::SIDES_LINES + k / LANES].0[k % LANES];
-        let volume = side(Sides::volume::<D>());
-        record[Centered::volume::<D>()] = volume.abs();
-        let marked = volume < 0.0;
-        for a in 0..D::COUNT {
-            record[a] = side(a);
-            record[Centered::delta::<D>() + a] = if marked {
-                let half_step_change = side(Sides::fields::<D>() + a) - self.velocity[a][i];
-                self.half_step * sums[0].0[Sums::FORCE + a] / self.mass[i] - half_step_change
-            } else {
-                0.0
-            };
+    /// δ of particle `i` in the place of its impedances, if it is marked; all of it is in the first line.
+    #[inline]
+    fn particle(&self, i: usize, sums: &[f64; LANES], side: &mut [Line]) {
+        if side[0].0[Sides::volume::<D>()] < 0.0 {
+            for a in 0..D::COUNT {
+                let at = Sides::fields::<D>() + a;
+                let half_step_change = side[at / LANES].0[at % LANES] - self.velocity[a][i];
+                side[0].0[Centered::delta::<D>() + a] =
+                    self.half_step * sums[Sums::FORCE + a] / self.mass[i] - half_step_change;
+            }
+        }
+    }
+
+    /// δ of the copies across periodic sides.
+    fn refresh_copies(&self, sides: &mut [Line]) {
+        let (own, copies) = sides.split_at_mut(self.lists.n_padded() * D::SIDES_LINES);
+        let delta = Centered::delta::<D>()..Centered::delta::<D>() + D::COUNT;
+        for (owner, copy) in self.lists.halo().owner.iter().zip(copies.chunks_exact_mut(D::SIDES_LINES)) {
+            copy[0].0[delta.clone()].copy_from_slice(&own[*owner as usize * D::SIDES_LINES].0[delta.clone()]);
         }
     }
 }
@@ -106,7 +121,7 @@ impl<D: SolidDimension> LaneKernel for CenteringTile<'_, '_, D> {
                 };
                 let other = left.pair(pass, &slots[k], force, &mut own);
                 // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
-                unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k]) };
+                unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k].map(u32::from)) };
             }
             // SAFETY: as above; places of own particles come first.
             unsafe { add_to_buffer::<D, L>(&own, buffer, &own_indices(b)) };
@@ -125,8 +140,15 @@ impl<D: SolidDimension, L: Lanes> Left<D, L> {
     fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
         let mut record = D::StateRecord::<L>::splat(L::zero());
         // SAFETY: indices of particles are below `n_padded`, and records reach to `n_records`.
-        unsafe { load_line(&mut record, pass.records, D::STATE_LINES, 0, indices) };
+        unsafe { load_line(&mut record, pass.records, D::SIDES_LINES, 0, indices) };
         Self { record, size: pass.smoothing.own(indices) }
+    }
+
+    /// δ of eight particles: zero where there is no mark.
+    #[inline(always)]
+    fn delta(record: &D::StateRecord<L>, a: usize) -> L {
+        let delta = record[Centered::delta::<D>() + a];
+        record[Sides::volume::<D>()].select_less(L::zero(), delta, L::zero())
     }
 
     /// Adds what the pair gives to the left particle, and returns what it gives to the right one.
@@ -141,11 +163,11 @@ impl<D: SolidDimension, L: Lanes> Left<D, L> {
         let left = &self.record;
         let mut right = D::StateRecord::<L>::splat(L::zero());
         // SAFETY: entries of a list are below `n_records`, the length of the records.
-        unsafe { load_line(&mut right, pass.records, D::STATE_LINES, 0, slot) };
+        unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, 0, slot) };
         let mut dx = D::Axes::<L>::splat(L::zero());
         let (mut mean, mut change, mut contact) = (dx, dx, dx);
         for a in 0..D::COUNT {
-            let (here, there) = (left[Centered::delta::<D>() + a], right[Centered::delta::<D>() + a]);
+            let (here, there) = (Self::delta(left, a), Self::delta(&right, a));
             dx[a] = right[a] - left[a];
             mean[a] = L::splat(0.5) * (here + there);
             change[a] = there - here;
@@ -153,7 +175,7 @@ impl<D: SolidDimension, L: Lanes> Left<D, L> {
         }
         let scales = pass.smoothing.scales(self.size, slot);
         let q = dot::<D, L>(&dx, &dx).sqrt() * scales.inverse_h;
-        let volumes = left[Centered::volume::<D>()] * right[Centered::volume::<D>()];
+        let volumes = (left[Sides::volume::<D>()] * right[Sides::volume::<D>()]).abs();
         let weight = volumes * (scales.slope * pass.smoothing.minus_slope_over_q(q));
         let power = dot::<D, L>(&contact, &mean);
         let mut other = D::SumsRecord::<L>::splat(L::zero());

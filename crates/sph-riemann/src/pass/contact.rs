@@ -17,13 +17,15 @@
 //! so that each side exerts σ K e - c × e of its own, while U* keeps the mean correction. Each pair is solved once: what one
 //! particle gains in momentum and energy the other loses, bit for bit, and the sums conserve both to round-off.
 
+use std::hint::black_box;
+
 use sph_core::dimension::Components;
 use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
 
 use super::sums::{TilePairs, add_to_buffer};
 use super::{Pass, load_line, own_indices};
 use crate::dimension::{SolidDimension, cross, dot, times};
-use crate::limiter::{Limiter, SlopeLimiter, with_limiter};
+use crate::limiter::{Limiter, SlopeLimiter, VanLeer, with_limiter};
 use crate::record::{Sides, Sums};
 use crate::scheme::SurfaceTreatment;
 
@@ -43,6 +45,42 @@ pub(super) struct ContactTile<'a, 'b, D: SolidDimension, const RECONSTRUCT: bool
     pub buffer: &'a mut [Line],
 }
 
+/// Slots whose geometry is worked out in one go, before their contacts: roots and divisions of one do not wait for the sums
+/// of another.
+const CHUNK: usize = 8;
+
+/// How eight pairs lie to each other.
+#[derive(Clone, Copy)]
+struct Approach<D: SolidDimension, L: Lanes> {
+    /// First line of the right records.
+    first_line: [L; LANES],
+    /// r_j - r_i [m], and its direction.
+    dx: D::Axes<L>,
+    e: D::Axes<L>,
+    /// w [m^(d-1)], and w over the distance [m^(d-2)].
+    weight: L,
+    weight_over_r: L,
+    /// True if time-centring needs the force of one of the pairs.
+    marked: bool,
+}
+
+impl<D: SolidDimension, L: Lanes> Approach<D, L> {
+    #[inline(always)]
+    fn nowhere() -> Self {
+        let (zero, axes) = (L::zero(), D::Axes::<L>::splat(L::zero()));
+        let (first_line, dx, e) = ([zero; LANES], axes, axes);
+        Self { first_line, dx, e, weight: zero, weight_over_r: zero, marked: false }
+    }
+}
+
+/// The limiter of the pass. The compiler must not know that `is_default` says van Leer: there is then a branch for it, and
+/// not a jump through a table for every slot.
+#[derive(Clone, Copy)]
+struct Chosen {
+    limiter: Limiter,
+    is_default: bool,
+}
+
 /// What the contact of a pair gives.
 struct PairContact<D: SolidDimension, L: Lanes> {
     /// w e_R [m^(d-1)].
@@ -55,8 +93,6 @@ struct PairContact<D: SolidDimension, L: Lanes> {
     right_velocity: D::Axes<L>,
     /// (U_j - U_i)² [m²/s²].
     relative_speed_squared: L,
-    /// True if time-centring needs the force of one of the eight pairs.
-    marked: bool,
 }
 
 impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, '_, D, RECONSTRUCT> {
@@ -65,6 +101,8 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
         let Self { pass, index, limiter, pairs, buffer } = self;
         let lists = &pass.lists.tiles()[index];
         pairs.clear_forces();
+        let limiter = Chosen { limiter, is_default: black_box(limiter == Limiter::VanLeer) };
+        let mut approaches = [Approach::<D, L>::nowhere(); CHUNK];
         for b in 0..lists.n_blocks() {
             let (slots, targets) = lists.pairs(b);
             let left = Left::<D, L, RECONSTRUCT>::load(
@@ -72,20 +110,27 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
                 &own_indices(index * sph_core::neighbors::TILE_BLOCKS + b),
             );
             let mut own = D::SumsRecord::<L>::splat(L::zero());
-            for k in 0..slots.len() {
-                let pair = left.contact(pass, limiter, &slots[k]);
-                pairs.marked.push(pair.as_ref().is_some_and(|pair| pair.marked));
-                let Some(pair) = pair else { continue };
-                if pair.marked {
-                    for a in 0..D::COUNT {
-                        pairs.forces.push(Line::default());
-                        let last = pairs.forces.len() - 1;
-                        pair.force[a].store(&mut pairs.forces[last].0);
+            for (slots, targets) in slots.chunks(CHUNK).zip(targets.chunks(CHUNK)) {
+                let first = pairs.marked.len();
+                pairs.marked.resize(first + slots.len(), false);
+                let mut reaching = left.approaches(pass, slots, &mut approaches);
+                while reaching != 0 {
+                    let k = reaching.trailing_zeros() as usize;
+                    reaching &= reaching - 1;
+                    let approach = &approaches[k];
+                    let pair = left.contact(pass, limiter, &slots[k], approach);
+                    if approach.marked {
+                        pairs.marked[first + k] = true;
+                        for a in 0..D::COUNT {
+                            pairs.forces.push(Line::default());
+                            let last = pairs.forces.len() - 1;
+                            pair.force[a].store(&mut pairs.forces[last].0);
+                        }
                     }
+                    let other = left.share(&pair, &mut own);
+                    // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
+                    unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k].map(u32::from)) };
                 }
-                let other = left.share(&pair, &mut own);
-                // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
-                unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k]) };
             }
             // SAFETY: as above; places of own particles come first.
             unsafe { add_to_buffer::<D, L>(&own, buffer, &own_indices(b)) };
@@ -143,55 +188,78 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         other
     }
 
-    /// The contacts of eight pairs; `None` if all are out of reach.
+    /// Fills in how the pairs of some slots lie to each other. Bit k of the result is set where slot k has a pair within
+    /// the support of the kernel.
+    #[inline(always)]
+    fn approaches(
+        &self,
+        pass: &Pass<'_, D>,
+        slots: &[[u32; LANES]],
+        approaches: &mut [Approach<D, L>; CHUNK],
+    ) -> u32 {
+        let mut reaching = 0;
+        for (k, to) in (0..slots.len()).zip(approaches) {
+            // SAFETY: entries of a list are below `n_records`, the length of the records.
+            let first_line = unsafe { L::load_records(pass.records, D::SIDES_LINES, 0, &slots[k]) };
+            let mut dx = D::Axes::<L>::splat(L::zero());
+            for a in 0..D::COUNT {
+                dx[a] = first_line[a] - self.record[a];
+            }
+            let r = dot::<D, L>(&dx, &dx).sqrt();
+            let scales = pass.smoothing.scales(self.size, &slots[k]);
+            let q = r * scales.inverse_h;
+            // A particle stands in for missing neighbours of its own: e = 0 there, and all is zero.
+            let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
+            let volume = first_line[Sides::volume::<D>()];
+            let volumes = self.twice_volume * volume.abs();
+            for line in D::COUNT + 1..LANES {
+                to.first_line[line] = first_line[line];
+            }
+            for a in 0..D::COUNT {
+                to.dx[a] = dx[a];
+                to.e[a] = dx[a] * inverse_r;
+            }
+            to.weight_over_r = volumes * (scales.slope * pass.smoothing.minus_slope_over_q(q));
+            to.weight = to.weight_over_r * r;
+            to.marked = self.marked || volume.any_less(L::zero());
+            reaching |= u32::from(q.any_less(L::splat(pass.smoothing.support()))) << k;
+        }
+        reaching
+    }
+
+    /// The contacts of eight pairs.
     #[inline(always)]
     fn contact(
         &self,
         pass: &Pass<'_, D>,
-        limiter: Limiter,
+        limiter: Chosen,
         slot: &[u32; LANES],
-    ) -> Option<PairContact<D, L>> {
+        approach: &Approach<D, L>,
+    ) -> PairContact<D, L> {
         let left = &self.record;
         let mut right = D::SidesRecord::<L>::splat(L::zero());
-        // SAFETY: entries of a list are below `n_records`, the length of the records.
-        unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, 0, slot) };
-        let mut dx = D::Axes::<L>::splat(L::zero());
-        for a in 0..D::COUNT {
-            dx[a] = right[a] - left[a];
-        }
-        let r = dot::<D, L>(&dx, &dx).sqrt();
-        let scales = pass.smoothing.scales(self.size, slot);
-        let q = r * scales.inverse_h;
-        if !q.any_less(L::splat(pass.smoothing.support())) {
-            return None;
+        for k in 0..LANES {
+            right[k] = approach.first_line[k];
         }
         for line in 1..Self::LINES {
-            // SAFETY: as above.
+            // SAFETY: entries of a list are below `n_records`, the length of the records.
             unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, line, slot) };
         }
-        let volume = right[Sides::volume::<D>()];
-        let volumes = self.twice_volume * volume.abs();
-        let weight = volumes * (scales.slope * pass.smoothing.minus_slope_over_q(q));
-        // A particle stands in for missing neighbours of its own: e = 0 there, and all is zero.
-        let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
-        let (mut gradient, mut e, mut du, mut right_velocity) = (dx, dx, dx, dx);
+        let (mut gradient, mut du, mut right_velocity) = (approach.dx, approach.dx, approach.dx);
         for a in 0..D::COUNT {
-            gradient[a] = weight * dx[a];
-            e[a] = dx[a] * inverse_r;
+            gradient[a] = approach.weight_over_r * approach.dx[a];
             right_velocity[a] = right[Sides::fields::<D>() + a];
             du[a] = right_velocity[a] - left[Sides::fields::<D>() + a];
         }
-        let sides = Pair { left, right: &right, dx: &dx, e: &e };
+        let sides = Pair { left, right: &right, dx: &approach.dx, e: &approach.e };
         let (velocity, mut force) = sides.star::<RECONSTRUCT>(pass, limiter);
-        let weight = weight * r;
         for a in 0..D::COUNT {
-            force[a] = weight * force[a];
+            force[a] = approach.weight * force[a];
         }
         // Pairs of the skin do not count: when lists are rebuilt must not matter.
-        let support = L::splat(pass.smoothing.support());
-        let relative_speed_squared = q.select_less(support, dot::<D, L>(&du, &du), L::zero());
-        let marked = self.marked || volume.any_less(L::zero());
-        Some(PairContact { gradient, force, velocity, right_velocity, relative_speed_squared, marked })
+        let relative_speed_squared =
+            L::zero().select_less(approach.weight_over_r, dot::<D, L>(&du, &du), L::zero());
+        PairContact { gradient, force, velocity, right_velocity, relative_speed_squared }
     }
 }
 
@@ -206,11 +274,7 @@ struct Pair<'a, D: SolidDimension, L: Lanes> {
 impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
     /// Velocity and traction at the contact.
     #[inline(always)]
-    fn star<const RECONSTRUCT: bool>(
-        &self,
-        pass: &Pass<'_, D>,
-        limiter: Limiter,
-    ) -> (D::Axes<L>, D::Axes<L>) {
+    fn star<const RECONSTRUCT: bool>(&self, pass: &Pass<'_, D>, limiter: Chosen) -> (D::Axes<L>, D::Axes<L>) {
         let (phi_l, phi_r) = self.reconstruct::<RECONSTRUCT>(limiter);
         let mut du = D::Axes::<L>::splat(L::zero());
         for a in 0..D::COUNT {
@@ -274,9 +338,10 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
         half_difference_e: &D::Axes<L>,
         [w_l, w_r]: [L; 2],
     ) -> D::Axes<L> {
+        // w_l + w_r = 1.
         let mut weighted = *stress_l;
         for k in 0..D::STRESS_COUNT {
-            weighted[k] = w_l.mul_add(stress_l[k], -(w_r * stress_r[k]));
+            weighted[k] = w_l.mul_add(stress_l[k] + stress_r[k], -stress_r[k]);
         }
         let mut torque = D::Spin::<L>::splat(L::zero());
         for c in 0..D::SPIN_COUNT {
@@ -293,7 +358,7 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
 
     /// Φ_l and Φ_r.
     #[inline(always)]
-    fn reconstruct<const RECONSTRUCT: bool>(&self, limiter: Limiter) -> (D::Fields<L>, D::Fields<L>) {
+    fn reconstruct<const RECONSTRUCT: bool>(&self, limiter: Chosen) -> (D::Fields<L>, D::Fields<L>) {
         let mut phi_l = D::Fields::<L>::splat(L::zero());
         let mut phi_r = phi_l;
         for f in 0..D::COUNT + D::STRESS_COUNT {
@@ -301,20 +366,28 @@ impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
             phi_r[f] = self.right[Sides::fields::<D>() + f];
         }
         if RECONSTRUCT {
-            with_limiter!(limiter, M => self.limited::<M>(&mut phi_l, &mut phi_r));
+            if limiter.is_default {
+                self.limited::<VanLeer>(&mut phi_l, &mut phi_r);
+            } else {
+                with_limiter!(limiter.limiter, M => self.limited::<M>(&mut phi_l, &mut phi_r));
+            }
         }
         (phi_l, phi_r)
     }
 
     #[inline(always)]
     fn limited<M: SlopeLimiter>(&self, phi_l: &mut D::Fields<L>, phi_r: &mut D::Fields<L>) {
+        let mut dx = *self.dx;
+        for a in 0..D::COUNT {
+            dx[a] = L::splat(M::GRADIENT_MULTIPLE) * dx[a];
+        }
         for f in 0..D::COUNT + D::STRESS_COUNT {
             let first = Sides::slopes::<D>() + f * D::COUNT;
             let mut along_l = L::splat(LEAST_GRADIENT);
             let mut along_r = along_l;
             for a in 0..D::COUNT {
-                along_l = self.left[first + a].mul_add(self.dx[a], along_l);
-                along_r = self.right[first + a].mul_add(self.dx[a], along_r);
+                along_l = self.left[first + a].mul_add(dx[a], along_l);
+                along_r = self.right[first + a].mul_add(dx[a], along_r);
             }
             (phi_l[f], phi_r[f]) = M::sides(phi_l[f], phi_r[f], along_l, along_r);
         }

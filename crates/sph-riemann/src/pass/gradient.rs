@@ -31,7 +31,7 @@ pub(super) struct GradientTile<'a, 'b, D: SolidDimension> {
 }
 
 /// Below this eigenvalue of L the half step is centred on the true acceleration.
-const CENTERING_EIGENVALUE: f64 = 0.75;
+pub(super) const CENTERING_EIGENVALUE: f64 = 0.75;
 
 /// Sums over the neighbours of eight particles.
 struct Sums<D: SolidDimension, L: Lanes> {
@@ -150,10 +150,6 @@ fn finish<D: SolidDimension, L: Lanes>(
     } else {
         D::Spin::<L>::splat(L::zero())
     };
-    least.store(&mut rows[Row::LEAST_EIGENVALUE].0);
-    for k in 0..D::STRESS_COUNT {
-        sums.matrix[k].store(&mut rows[Row::gradient_matrix::<D>() + k].0);
-    }
     let mut record = D::SidesRecord::<L>::splat(L::zero());
     // Position and volume half a step later: forces that do not see the turn of the pairs would spin a disc up.
     let step = L::splat(pass.half_step);
@@ -174,6 +170,11 @@ fn finish<D: SolidDimension, L: Lanes>(
     (growth * L::load(&rows[Row::INVERSE_DENSITY].0)).store(&mut rows[Row::INVERSE_DENSITY].0);
     record[Sides::longitudinal::<D>()] = L::load(&rows[Row::LONGITUDINAL].0);
     record[Sides::transverse::<D>()] = L::load(&rows[Row::TRANSVERSE].0);
+    // From here on these rows hold what the pass has found.
+    least.store(&mut rows[Row::LEAST_EIGENVALUE].0);
+    for k in 0..D::STRESS_COUNT {
+        sums.matrix[k].store(&mut rows[Row::gradient_matrix::<D>() + k].0);
+    }
     for c in 0..D::SPIN_COUNT {
         record[Sides::torque::<D>() + c] = torque[c];
     }

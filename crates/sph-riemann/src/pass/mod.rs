@@ -20,7 +20,8 @@ use crate::limiter::Limiter;
 use crate::record::Row;
 use crate::scheme::SurfaceTreatment;
 pub use centering::Deltas;
-pub use smoothing::Smoothing;
+pub use smoothing::{Sizes, Smoothing};
+use sums::AddRecords;
 pub use sums::{TilePairs, collect};
 
 /// What all passes read.
@@ -32,7 +33,7 @@ pub struct Pass<'a, D: SolidDimension> {
     pub smoothing: Smoothing<'a>,
     /// What is done at free surfaces.
     pub surface: SurfaceTreatment,
-    /// Records that are read: of the first pass for gradients, of the second for contacts, of time-centring for it.
+    /// Records that are read: of the first pass for gradients, of the second for contacts and time-centring.
     pub records: &'a [Line],
     /// Half the time step [s], zero in schemes without a half step.
     pub half_step: f64,
@@ -87,12 +88,13 @@ impl<D: SolidDimension> Pass<'_, D> {
     /// # Panics
     /// As [`Pass::gradients`].
     pub fn centering(&self, sums: &mut [Line], pairs: &mut [TilePairs]) {
-        self.check_records(D::STATE_LINES);
+        self.check_records(D::SIDES_LINES);
         self.run_with_buffers(sums, pairs, |index, pairs, buffer, own| {
             if pairs.has_marked() {
                 D::run(self, Tile { index, work: Work::Centering { pairs, buffer } });
-                let records = own.chunks_exact_mut(D::SUM_LINES).zip(buffer.chunks_exact(D::SUM_LINES));
-                records.for_each(|(own, sums)| sums::add::<D>(own, sums));
+                let (sums, stride) = (&buffer[..own.len()], D::SUM_LINES);
+                let add = AddRecords { into: own, particles: None, first: 0, sums, stride };
+                dispatch_with(self.instructions, add);
             }
             pairs.has_marked()
         });

@@ -1,12 +1,36 @@
 //! Kernel and smoothing lengths as pair loops need them.
 
-use sph_core::kernel::KernelFamily;
+use std::hint::black_box;
+
+use sph_core::kernel::{KernelFamily, SmoothingKernel, WendlandC2};
 use sph_core::lanes::{LANES, Lanes};
+
+/// Sizes D of the particles that records show [m].
+#[derive(Clone, Copy, Debug)]
+pub enum Sizes<'a> {
+    /// All have this one.
+    Uniform(f64),
+    /// One for each record.
+    Each(&'a [f64]),
+}
+
+impl Sizes<'_> {
+    /// Size of the particle of a record [m].
+    pub fn of(&self, record: usize) -> f64 {
+        match self {
+            Self::Uniform(size) => *size,
+            Self::Each(sizes) => sizes[record],
+        }
+    }
+}
 
 /// Kernel, θ and particle sizes. Where all particles have one size, h is one number and the sizes are not read.
 #[derive(Clone, Copy, Debug)]
 pub struct Smoothing<'a> {
     kernel: KernelFamily,
+    /// True for Wendland C2. The compiler must not know that it is: pair loops then have a branch for it, and not a jump
+    /// through a table, which costs more.
+    is_default: bool,
     theta: f64,
     normalization: f64,
     power: i32,
@@ -24,16 +48,20 @@ pub struct Scales<T> {
 }
 
 impl<'a> Smoothing<'a> {
-    /// Smoothing for records of the given sizes [m] in `count` dimensions.
-    pub fn new(kernel: KernelFamily, theta: f64, count: usize, size: &'a [f64]) -> Self {
+    /// Smoothing for records of the given sizes in `count` dimensions.
+    pub fn new(kernel: KernelFamily, theta: f64, count: usize, sizes: Sizes<'a>) -> Self {
         let normalization = kernel.normalization(count);
         let power = count as i32 + 2;
-        let first = size.first().copied().unwrap_or(1.0);
-        let uniform = size.iter().all(|&s| s == first).then(|| {
-            let inverse_h = 1.0 / (2.0 * theta * first);
+        let scales = |size: f64| {
+            let inverse_h = 1.0 / (2.0 * theta * size);
             Scales { inverse_h, slope: normalization * inverse_h.powi(power) }
-        });
-        Self { kernel, theta, normalization, power, uniform, size }
+        };
+        let (uniform, size): (_, &[f64]) = match sizes {
+            Sizes::Uniform(size) => (Some(scales(size)), &[]),
+            Sizes::Each(sizes) => (None, sizes),
+        };
+        let is_default = black_box(kernel == KernelFamily::WendlandC2);
+        Self { kernel, is_default, theta, normalization, power, uniform, size }
     }
 
     /// Radius of the support in smoothing lengths.
@@ -65,6 +93,6 @@ impl<'a> Smoothing<'a> {
     /// -(dw/dq)/q.
     #[inline(always)]
     pub(super) fn minus_slope_over_q<L: Lanes>(&self, q: L) -> L {
-        self.kernel.minus_slope_over_q(q)
+        if self.is_default { WendlandC2::minus_slope_over_q(q) } else { self.kernel.minus_slope_over_q(q) }
     }
 }

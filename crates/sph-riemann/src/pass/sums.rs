@@ -7,7 +7,7 @@
 
 use std::cell::RefCell;
 
-use sph_core::lanes::{LANES, Lanes, Line};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, dispatch};
 use sph_core::neighbors::{NeighborLists, TILE};
 
 use crate::dimension::SolidDimension;
@@ -57,16 +57,27 @@ pub(super) fn with_buffer(lines: usize, work: impl FnOnce(&mut [Line])) {
     });
 }
 
-/// Adds one record of sums to another.
-pub(super) fn add<D: SolidDimension>(record: &mut [Line], sums: &[Line]) {
-    let last = D::SUM_LINES - 1;
-    for (line, (into, from)) in record.iter_mut().zip(sums).enumerate() {
-        let largest = into.0[LANES - 1].max(from.0[LANES - 1]);
-        for k in 0..LANES {
-            into.0[k] += from.0[k];
-        }
-        if line == last {
-            into.0[LANES - 1] = largest;
+/// Adds records of sums to those of particles: one after the other, or of the particles with these numbers less `first`.
+pub(super) struct AddRecords<'a> {
+    pub into: &'a mut [Line],
+    pub particles: Option<&'a [u32]>,
+    pub first: usize,
+    pub sums: &'a [Line],
+    /// Lines of a record.
+    pub stride: usize,
+}
+
+impl LaneKernel for AddRecords<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { into, particles, first, sums, stride } = self;
+        for (k, sums) in sums.chunks_exact(stride).enumerate() {
+            let place = if let Some(particles) = particles { particles[k] as usize - first } else { k };
+            for line in 0..stride {
+                let record = &mut into[place * stride + line].0;
+                let (new, old) = (L::load(&sums[line].0), L::load(record));
+                if line + 1 == stride { new.sums_and_maximum(old) } else { new + old }.store(record);
+            }
         }
     }
 }
@@ -78,14 +89,17 @@ pub fn collect<D: SolidDimension>(
     tile: usize,
     own: &mut [Line],
 ) {
+    let stride = D::SUM_LINES;
     for incoming in lists.tiles()[tile].incoming() {
         let source = incoming.tile as usize;
-        let range = incoming.first as usize..incoming.end as usize;
-        let sums = pairs[source].foreign.chunks_exact(D::SUM_LINES).skip(range.start);
-        for (particle, sums) in lists.tiles()[source].foreign()[range].iter().zip(sums) {
-            let at = (*particle as usize - tile * TILE) * D::SUM_LINES;
-            add::<D>(&mut own[at..at + D::SUM_LINES], sums);
+        let foreign = &pairs[source].foreign;
+        if foreign.is_empty() {
+            continue;
         }
+        let range = incoming.first as usize..incoming.end as usize;
+        let sums = &foreign[range.start * stride..range.end * stride];
+        let particles = Some(&lists.tiles()[source].foreign()[range]);
+        dispatch(AddRecords { into: own, particles, first: tile * TILE, sums, stride });
     }
 }
 

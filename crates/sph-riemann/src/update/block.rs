@@ -6,7 +6,7 @@ use sph_core::particles::Constraint;
 
 use super::{Context, Fixed, LARGEST_RELAXATION, TileColumns, TileReport};
 use crate::dimension::{SolidDimension, dual, spin_matrix, times};
-use crate::matter::{Numbers, Tension};
+use crate::matter::{Eight, Numbers, Tension};
 use crate::record::{Row, Sides, Sums};
 use crate::scheme::SurfaceTreatment;
 
@@ -30,12 +30,15 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
 impl<D: SolidDimension> LaneKernel for UpdateTile<'_, D> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
+        let mut relaxation_work = L::zero();
         for k in (0..self.columns.density.len()).step_by(LANES) {
             let block = Block::<D, L>::load(&self, k);
             let motion = self.advance_motion(&block);
             let flow = self.advance_density(&block, &motion);
+            relaxation_work += flow.relaxation_work;
             self.advance_stress(&block, &motion, flow);
         }
+        self.report.relaxation_work += relaxation_work.to_array().iter().sum::<f64>();
     }
 }
 
@@ -47,7 +50,9 @@ struct Block<'a, D: SolidDimension, L: Lanes> {
     i: usize,
     rows: &'a [Line],
     sums: D::SumsRecord<L>,
-    sides: D::SidesRecord<L>,
+    /// K, for schemes that correct.
+    correction: D::Symmetric<L>,
+    numbers: Numbers<L>,
     mass: L,
     constraint: &'a [Constraint],
     /// Bit l: there is a particle l, and its state evolves.
@@ -72,6 +77,20 @@ struct Motion<D: SolidDimension, L: Lanes> {
 struct Flow<L> {
     density: L,
     energy: L,
+    /// Work of the volume consistency [J], per metre of depth in the plane.
+    relaxation_work: L,
+}
+
+/// Which eight particles a block holds, for what is looked at one by one.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    /// Place of the first in the tile.
+    k: usize,
+    /// Index of the first.
+    i: usize,
+    constraint: &'a [Constraint],
+    /// Bit l: there is a particle l, and its state evolves.
+    evolves: u8,
 }
 
 /// Line `line` of eight records of `stride` lines from record `first` on, as numbers of a record.
@@ -103,11 +122,18 @@ impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
         for line in 0..D::SUM_LINES {
             load_own::<L, _>(&mut sums, outcome.sums, D::SUM_LINES, line, i);
         }
-        let mut sides = D::SidesRecord::<L>::splat(L::zero());
-        // Volume and correction: the last that is read.
-        for line in 0..=(Sides::slopes::<D>() - 1) / LANES {
-            load_own::<L, _>(&mut sides, outcome.sides, D::SIDES_LINES, line, i);
+        let mut correction = D::Symmetric::<L>::splat(L::zero());
+        if tile.context.settings.scheme.reconstructs() {
+            let mut sides = D::SidesRecord::<L>::splat(L::zero());
+            let first = Sides::correction::<D>();
+            for line in first / LANES..=(first + D::STRESS_COUNT - 1) / LANES {
+                load_own::<L, _>(&mut sides, outcome.sides, D::SIDES_LINES, line, i);
+            }
+            for c in 0..D::STRESS_COUNT {
+                correction[c] = sides[first + c];
+            }
         }
+        let material = &tile.fixed.material[i..i + valid];
         let mut evolves = u8::MAX >> (LANES - valid);
         let (mut free_lanes, mut evolves_lanes) = (L::one(), L::one());
         if constraint.iter().any(|&c| c != Constraint::Free) {
@@ -127,13 +153,19 @@ impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
             i,
             rows: &outcome.rows[i / LANES * count..][..count],
             sums,
-            sides,
+            correction,
+            numbers: tile.context.matter.numbers::<L>(material),
             mass: L::load_from(tile.fixed.mass, i),
             constraint,
             evolves,
             free_lanes,
             evolves_lanes,
         }
+    }
+
+    #[inline(always)]
+    fn place(&self) -> Place<'a> {
+        Place { k: self.k, i: self.i, constraint: self.constraint, evolves: self.evolves }
     }
 
     #[inline(always)]
@@ -151,7 +183,7 @@ impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
     #[inline(always)]
     fn velocity_gradient(&self, corrects: bool, capped: bool) -> D::Axes<D::Axes<L>> {
         let zero = D::Axes::<L>::splat(L::zero());
-        let inverse_volume = L::one() / self.sides[Sides::volume::<D>()].abs();
+        let inverse_volume = L::one() / (self.mass * self.row(Row::INVERSE_DENSITY));
         let mut raw = D::Axes::<D::Axes<L>>::splat(zero);
         for a in 0..D::COUNT {
             for b in 0..D::COUNT {
@@ -161,10 +193,8 @@ impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
         if !corrects {
             return raw; // No correction: the raw sum is the gradient.
         }
-        let mut correction = D::Symmetric::<L>::splat(L::zero());
-        let mut matrix = correction;
+        let mut matrix = self.correction;
         for c in 0..D::STRESS_COUNT {
-            correction[c] = self.sides[Sides::correction::<D>() + c];
             matrix[c] = self.row(Row::gradient_matrix::<D>() + c);
         }
         let spin =
@@ -179,7 +209,7 @@ impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
             for a in 0..D::COUNT {
                 rest[a] = raw[a][b] - rest[a];
             }
-            let corrected = times::<D, L>(&correction, &rest);
+            let corrected = times::<D, L>(&self.correction, &rest);
             for a in 0..D::COUNT {
                 gradient[a][b] = turn[a] + corrected[a];
             }
@@ -210,7 +240,12 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
             half.select_less(block.free_lanes, u + changes[a], u).store_to(self.columns.velocity[a], k);
         }
         if block.constraint.iter().any(|&c| c != Constraint::Free) {
-            self.report_imposed(block, &changes, kinetic, energy_change);
+            let mut change = [[0.0; LANES]; 3];
+            for a in 0..D::COUNT {
+                change[a] = changes[a].to_array();
+            }
+            let gains = [block.mass, kinetic, energy_change].map(L::to_array);
+            self.report_imposed(block.constraint, &change, &gains);
         }
         let corrects = self.context.settings.scheme.reconstructs();
         let capped = matches!(self.context.settings.surface, SurfaceTreatment::SpectralCap { .. });
@@ -219,20 +254,18 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
 
     /// Momentum and energy that imposed velocities put in.
     #[inline(never)]
-    fn report_imposed<L: Lanes>(
+    fn report_imposed(
         &mut self,
-        block: &Block<'_, D, L>,
-        changes: &D::Axes<L>,
-        kinetic: L,
-        energy_change: L,
+        constraint: &[Constraint],
+        changes: &[[f64; LANES]; 3],
+        [mass, kinetic, energy]: &[[f64; LANES]; 3],
     ) {
-        let (mass, kinetic, energy) = (block.mass.to_array(), kinetic.to_array(), energy_change.to_array());
-        for (l, &constraint) in block.constraint.iter().enumerate() {
+        for (l, &constraint) in constraint.iter().enumerate() {
             if constraint == Constraint::Free {
                 continue;
             }
             for a in 0..D::COUNT {
-                self.report.input.impulse[a] -= mass[l] * changes[a].to_array()[l];
+                self.report.input.impulse[a] -= mass[l] * changes[a][l];
             }
             let kept = if constraint == Constraint::Frozen { energy[l] } else { kinetic[l] };
             self.report.input.work -= mass[l] * kept;
@@ -263,13 +296,9 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
         let capped = least.less_mask(L::splat(self.context.least_eigenvalue)) & block.evolves;
         acted.inverse_capped += u64::from(capped.count_ones());
         let volume = block.mass * block.row(Row::INVERSE_DENSITY);
-        let work = (block.row(Row::PRESSURE) * volume * relaxation.abs() * tau).to_array();
-        for l in 0..block.constraint.len() {
-            if block.evolves >> l & 1 == 1 {
-                self.report.relaxation_work += work[l];
-            }
-        }
-        Flow { density, energy }
+        // Lanes behind the last particle have no volume.
+        let work = block.row(Row::PRESSURE) * volume * relaxation.abs() * tau;
+        Flow { density, energy, relaxation_work: block.evolved(work, L::zero()) }
     }
 
     /// r = d(ln ρ)/dt of the volume consistency [1/s]; see [`crate::volume`].
@@ -279,7 +308,7 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
         let Some(v) = settings.volume_consistency else { return L::zero() };
         let excess = L::load_from(self.fixed.packing_excess, block.i);
         let (zero, one, tolerance) = (L::zero(), L::one(), L::splat(v.tolerance));
-        let yield_strength = block.row(Row::YIELD_STRENGTH);
+        let yield_strength = block.numbers.yield_strength;
         let too_tight = tolerance.select_less(excess, excess - tolerance, zero);
         let loose = (excess + tolerance) * (one + excess / L::splat(v.void_deficit));
         let loose = yield_strength.select_less(block.row(Row::PRESSURE), loose, zero);
@@ -301,8 +330,8 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
         let (k, matter) = (block.k, self.context.matter);
         let end = k + block.constraint.len();
         let material = &self.fixed.material[block.i..block.i + block.constraint.len()];
-        let eight =
-            matter.eight::<L>(material, &self.columns.failed[k..end], &self.columns.distension[k..end]);
+        let (failed, distension) = (&self.columns.failed[k..end], &self.columns.distension[k..end]);
+        let eight = Eight { material, failed, distension, numbers: block.numbers };
         let mut deviator = D::Tensor::<L>::splat(L::zero());
         for c in 0..D::TENSOR_COUNT {
             deviator[c] = L::load_from(self.columns.deviator[c], k);
@@ -317,7 +346,15 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
             || tension.detail.is_some()
             || self.columns.failed[k..end].contains(&true)
         {
-            self.fail(block, &tension, &mut deviator);
+            let mut s = [[0.0; LANES]; 6];
+            for c in 0..D::TENSOR_COUNT {
+                s[c] = deviator[c].to_array();
+            }
+            // A copy, so that the hot path keeps its own in registers.
+            let left = L::load(&self.fail(block.place(), &{ tension }, &s));
+            for c in 0..D::TENSOR_COUNT {
+                deviator[c] = deviator[c] * left;
+            }
         }
         for c in 0..D::TENSOR_COUNT {
             deviator[c] = block.evolved(deviator[c], old[c]);
@@ -382,14 +419,10 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
         zero.select_less(shear, strain, zero)
     }
 
-    /// What failure changes: memory, deviator.
+    /// What failure changes: the memory of it; and the share of the deviator that is left, for each lane.
     #[inline(never)]
-    fn fail<L: Lanes>(&mut self, block: &Block<'_, D, L>, tension: &Tension, deviator: &mut D::Tensor<L>) {
+    fn fail(&mut self, block: Place<'_>, tension: &Tension, s: &[[f64; LANES]; 6]) -> [f64; LANES] {
         let mut left = [1.0; LANES];
-        let mut s = [[0.0; LANES]; 6];
-        for c in 0..D::TENSOR_COUNT {
-            s[c] = deviator[c].to_array();
-        }
         for l in (0..block.constraint.len()).filter(|l| block.evolves >> l & 1 == 1) {
             let at = block.k + l;
             let failed = tension.failed >> l & 1 == 1;
@@ -407,9 +440,7 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
                 left[l] = self.softening(block.i + l, &of_particle, strength_left);
             }
         }
-        for c in 0..D::TENSOR_COUNT {
-            deviator[c] = deviator[c] * L::load(&left);
-        }
+        left
     }
 
     /// Factor that brings a deviator [Pa] back to what is left of the yield surface after failure.

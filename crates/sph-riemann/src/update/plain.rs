@@ -89,7 +89,7 @@ impl<D: SolidDimension> TileColumns<'_, D> {
         let gradient = velocity_gradient::<D>(found, context.settings);
         let divergence: f64 = (0..D::COUNT).map(|a| gradient[a][a]).sum();
         let relaxation = match context.settings.volume_consistency {
-            Some(v) => relaxation_rate(&v, context.settings, fixed, i, found, tau),
+            Some(v) => relaxation_rate(&v, context, fixed, i, found),
             None => 0.0,
         };
         let acted = &mut report.interventions;
@@ -260,15 +260,15 @@ fn rigid_turn<D: SolidDimension>(
 /// r = d(ln ρ)/dt of the volume consistency [1/s]; see [`crate::volume`].
 fn relaxation_rate(
     v: &VolumeConsistency,
-    settings: &Settings,
+    context: &Context<'_>,
     fixed: &Fixed<'_>,
     i: usize,
     found: Found<'_>,
-    tau: f64,
 ) -> f64 {
+    let (settings, tau) = (context.settings, context.time_step);
     let excess = fixed.packing_excess[i];
     let row = |r: usize| found.row(r);
-    let yield_strength = row(Row::YIELD_STRENGTH);
+    let yield_strength = context.matter.materials()[fixed.material[i] as usize].strength.yield_strength();
     let share = if excess > v.tolerance {
         excess - v.tolerance
     } else if excess < -v.tolerance && excess > -v.void_deficit && row(Row::PRESSURE) > yield_strength {

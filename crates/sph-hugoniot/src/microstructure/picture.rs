@@ -22,7 +22,8 @@ pub fn write(case: &Case, sample: &Sample, path: &Path) -> Result<(), IoError> {
     draw(case, sample).write_png(path)
 }
 
-fn draw(case: &Case, sample: &Sample) -> FieldImage {
+/// The picture of the sample of a case.
+pub fn draw(case: &Case, sample: &Sample) -> FieldImage {
     let size = (sample.cell * MICRO, sample.height * MICRO);
     let title = case.name.clone();
     let label = format!(

@@ -6,6 +6,7 @@
 use sph_io::html::{Check, Verdict};
 
 use crate::config::Case;
+use crate::microstructure::measure;
 use crate::outcome::{PointOutcome, Status};
 
 /// Bounds of a figure of which less is better: good up to the first, to be looked at up to the second.
@@ -206,16 +207,19 @@ fn energies(outcome: &PointOutcome) -> Answer {
 }
 
 fn pores(case: &Case) -> Answer {
-    let across = 2.0 * case.medium.radius / case.medium.particle_size;
-    let (verdict, value) = match across {
-        // Shapes of many sizes, or an image: the case names no radius.
-        a if a <= 0.0 && case.medium.porosity > 1.0 + 1e-9 => {
-            (Verdict::Unknown, "pores of no single size: look at the picture of the sample".to_owned())
+    let features = measure::features(&case.medium);
+    let across = features.smallest_pore.unwrap_or(0.0);
+    let value = match features.smallest_gap {
+        Some(gap) => {
+            format!("{across:.1} particles across the smallest pore, {gap:.1} across the narrowest wall")
         }
+        None => format!("{across:.1} particles across the smallest pore"),
+    };
+    let (verdict, value) = match across {
         a if a <= 0.0 => (Verdict::Good, "no pores".to_owned()),
-        a if a >= PORE.0 => (Verdict::Good, format!("{a:.1} particles across a pore")),
-        a if a >= PORE.1 => (Verdict::Caution, format!("{a:.1} particles across a pore")),
-        a => (Verdict::Bad, format!("{a:.1} particles across a pore")),
+        a if a >= PORE.0 => (Verdict::Good, value),
+        a if a >= PORE.1 => (Verdict::Caution, value),
+        _ => (Verdict::Bad, value),
     };
     answer(
         verdict,

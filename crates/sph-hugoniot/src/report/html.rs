@@ -13,7 +13,7 @@ use super::{machine, monitors, plots, profile_plots, summary};
 use crate::check::{Check as CaseCheck, duration};
 use crate::config::Case;
 use crate::film::Frame;
-use crate::microstructure::Sample;
+use crate::microstructure::{Sample, picture};
 use crate::outcome::{PointOutcome, Status};
 
 /// A micrometer [1/m].
@@ -55,7 +55,7 @@ pub fn page(curves: &Curves<'_>, sample: &Sample, outcomes: &[&PointOutcome], fa
     }
     page = page.with_section(points);
     page.with_section(interventions_section(outcomes))
-        .with_section(case_section(case, facts))
+        .with_section(case_section(case, sample, facts))
         .with_section(time_section(outcomes, facts))
         .with_footer(format!(
             "{}. Verdicts are hints where to look, not proofs; the guide says how each figure is meant.",
@@ -228,7 +228,7 @@ fn point_section(case: &Case, outcome: &PointOutcome) -> Section {
             "Averages in the frame of the front. The two densities must meet behind it where pores are shut.",
         );
     }
-    if !outcome.film.is_empty() {
+    if case.output.images && !outcome.film.is_empty() {
         section = section
             .with_text("The front on its way through the medium, u_x above plastic strain; the medium comes from the right.")
             .with_strip(film(outcome));
@@ -291,10 +291,14 @@ fn interventions_section(outcomes: &[&PointOutcome]) -> Section {
     section.with_text("Nothing is bounded in silence. These bounds acted:").with_list(lines)
 }
 
-fn case_section(case: &Case, facts: &RunFacts) -> Section {
+fn case_section(case: &Case, sample: &Sample, facts: &RunFacts) -> Section {
     let check = CaseCheck::new(case.clone(), facts.threads.max(1));
     let json = serde_json::to_string_pretty(case).unwrap_or_default();
-    Section::new("The case")
+    let mut section = Section::new("The case");
+    if case.output.images {
+        section = section.with_picture(picture::draw(case, sample), "The medium: two by two cells.");
+    }
+    section
         .with_code(check.to_text())
         .with_section(Section::new("As it was written").folded().with_code(facts.case_text.clone()))
         .with_section(Section::new("As it was resolved, in SI with every default").folded().with_code(json))

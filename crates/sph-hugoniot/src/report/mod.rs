@@ -33,7 +33,7 @@ use anyhow::{Context, Result};
 
 use self::curves::Curves;
 use crate::config::Case;
-use crate::microstructure::Sample;
+use crate::microstructure::{Sample, picture};
 use crate::outcome::{PointOutcome, file_stem};
 
 /// The folder of a run.
@@ -113,6 +113,9 @@ impl Report {
         outcomes: &[&PointOutcome],
         facts: &html::RunFacts,
     ) -> Result<()> {
+        if curves.case.output.images {
+            picture::write(curves.case, sample, &self.folder.join("sample.png"))?;
+        }
         Ok(html::page(curves, sample, outcomes, facts).write(self.folder.join("report.html"))?)
     }
 

@@ -104,11 +104,13 @@ impl Owners {
         map: ColorMap,
         (low, high): (f64, f64),
     ) {
-        let color_of = |owner: u32| match values.get(owner as usize) {
-            None => map.void(),
-            Some(value) if !value.is_finite() => NOT_FINITE,
-            Some(value) => map.color((value - low) / (high - low)),
+        // Once a particle, not once a sample: a color map is a costly function.
+        let color = |value: &f64| match value.is_finite() {
+            false => NOT_FINITE,
+            true => map.color((value - low) / (high - low)),
         };
+        let colors: Vec<Color> = values.iter().map(color).collect();
+        let color_of = |owner: u32| colors.get(owner as usize).copied().unwrap_or(map.void());
         for row in 0..self.area.height {
             for column in 0..self.area.width {
                 let samples = self.samples(column, row).map(color_of);

@@ -112,7 +112,7 @@ fn bad_input_runs_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let (code, message) = run(folder.path(), &smoke().replace("2 um", "2 GPa"), &["--out", "out"]);
     assert_eq!(code, 2);
-    assert!(message.contains("case.ron:10:24") && message.contains("unit of pressure"), "{message}");
+    assert!(message.contains("case.ron:11:24") && message.contains("unit of pressure"), "{message}");
     assert!(!folder.path().join("out").exists());
     assert_eq!(run(folder.path(), smoke(), &["--up", "100,fast"]).0, 2);
     assert_eq!(run(folder.path(), smoke(), &["--up", "-5"]).0, 2);

@@ -40,7 +40,8 @@ pub struct RunFacts {
 pub fn page(curves: &Curves<'_>, sample: &Sample, outcomes: &[&PointOutcome], facts: &RunFacts) -> Page {
     let case = curves.case;
     let (verdict, words) = answer(case, outcomes);
-    let (name, size) = (&case.material.name, case.medium.particle_size * MICRO);
+    let names: Vec<String> = case.materials().into_iter().map(|m| m.name).collect();
+    let (name, size) = (names.join(" and "), case.medium.particle_size * MICRO);
     let lead = format!("u_s(u_p) of {name} with porosity {:.4}, particles of {size:.3} µm", sample.porosity);
     let mut page = Page::new(format!("Shock Hugoniot: {}", case.name))
         .with_lead(lead)

@@ -3,10 +3,15 @@
 //! A [`Faults`] list collects everything that is wrong with a file, so that one run tells the user all of it. Each
 //! fault is shown in the manner of a compiler: path, line, column, the line itself, the field, and a hint.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
+/// Most faults of a file that are kept and told; the others are counted.
+pub const MAX_FAULTS: usize = 100;
+/// Longest line that is shown beside a fault [bytes].
+const LONGEST_LINE: usize = 2000;
 
 /// A place in the text, in bytes.
 pub type Span = Range<usize>;
@@ -37,24 +42,37 @@ impl Fault {
     }
 }
 
-/// Collects faults from anywhere in the reading of a file.
+/// Collects faults from anywhere in the reading of a file: the first [`MAX_FAULTS`], and how many more there were.
 #[derive(Debug, Default)]
-pub struct Faults(RefCell<Vec<Fault>>);
+pub struct Faults {
+    list: RefCell<Vec<Fault>>,
+    left_out: Cell<usize>,
+}
 
 impl Faults {
     /// Adds a fault.
     pub fn push(&self, fault: Fault) {
-        self.0.borrow_mut().push(fault);
+        let mut list = self.list.borrow_mut();
+        if list.len() < MAX_FAULTS {
+            list.push(fault);
+        } else {
+            self.left_out.set(self.left_out.get() + 1);
+        }
     }
 
     /// True while nothing is wrong.
     pub fn is_empty(&self) -> bool {
-        self.0.borrow().is_empty()
+        self.list.borrow().is_empty()
+    }
+
+    /// Faults that were counted only.
+    pub fn left_out(&self) -> usize {
+        self.left_out.get()
     }
 
     /// The faults in the order of the text, each once.
     pub fn into_sorted(self) -> Vec<Fault> {
-        let mut list = self.0.into_inner();
+        let mut list = self.list.into_inner();
         list.sort_by_key(|f| (f.span.start, f.span.end));
         list.dedup();
         list
@@ -69,8 +87,10 @@ pub struct CaseError {
     pub path: String,
     /// The file's text.
     pub text: String,
-    /// What is wrong, in the order of the text.
+    /// What is wrong, in the order of the text: [`MAX_FAULTS`] at most.
     pub faults: Vec<Fault>,
+    /// Faults beyond these.
+    pub left_out: usize,
 }
 
 impl CaseError {
@@ -78,12 +98,12 @@ impl CaseError {
     pub fn render(&self, color: bool) -> String {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut out: Vec<String> = self.faults.iter().map(|f| self.render_one(&renderer, f)).collect();
-        let n = self.faults.len();
-        out.push(format!(
-            "{}: {n} fault{} found; nothing was run\n",
-            self.path,
-            if n == 1 { "" } else { "s" }
-        ));
+        let (n, first) = match self.left_out {
+            0 => (self.faults.len(), ""),
+            more => (self.faults.len() + more, ", the first of them shown"),
+        };
+        let s = if n == 1 { "" } else { "s" };
+        out.push(format!("{}: {n} fault{s} found{first}; nothing was run\n", self.path));
         out.join("\n")
     }
 
@@ -92,17 +112,28 @@ impl CaseError {
             "" => fault.message.clone(),
             field => format!("{field}: {}", fault.message),
         };
-        let snippet = Snippet::source(self.text.as_str())
-            .path(self.path.as_str())
-            .line_start(1)
-            .annotation(AnnotationKind::Primary.span(self.clamp(&fault.span)));
-        let mut group: Group<'_> = Level::ERROR.primary_title(title).element(snippet);
+        let span = self.clamp(&fault.span);
+        let title = Level::ERROR.primary_title(title);
+        let mut group: Group<'_> = if self.line_is_long(span.start) {
+            let (line, column) = self.line_and_column(span.start);
+            title.element(Origin::path(self.path.as_str()).line(line).char_column(column))
+        } else {
+            let snippet = Snippet::source(self.text.as_str()).path(self.path.as_str()).line_start(1);
+            title.element(snippet.annotation(AnnotationKind::Primary.span(span)))
+        };
         if let Some(hint) = &fault.hint {
             group = group.element(Level::HELP.with_name("hint").message(hint.as_str()));
         }
         let mut text = renderer.render(&[group]).to_string();
         text.push('\n');
         text
+    }
+
+    /// True where the line that a place stands in is too long to be shown.
+    fn line_is_long(&self, at: usize) -> bool {
+        let begin = self.text[..at].rfind('\n').map_or(0, |k| k + 1);
+        let end = self.text[at..].find('\n').map_or(self.text.len(), |k| at + k);
+        end - begin > LONGEST_LINE
     }
 
     /// A span inside the text, on character boundaries.
@@ -160,6 +191,7 @@ mod tests {
                 message: "`GPa` is a pressure".into(),
                 hint: Some("such as \"20 um\"".into()),
             }],
+            left_out: 0,
         };
         let text = error.render(false);
         for part in [
@@ -176,9 +208,21 @@ mod tests {
 
     #[test]
     fn spans_outside_the_text_are_drawn_at_its_end() {
-        let error =
-            CaseError { path: "a".into(), text: "(µ".into(), faults: vec![Fault::new(2..99, "cut")] };
+        let faults = vec![Fault::new(2..99, "cut")];
+        let error = CaseError { path: "a".into(), text: "(µ".into(), faults, left_out: 0 };
         assert!(error.render(true).contains("cut"));
+    }
+
+    #[test]
+    fn what_is_told_of_many_faults_and_of_long_lines_is_bounded() {
+        let faults = Faults::default();
+        (0..1000).for_each(|k| faults.push(Fault::new(k..k + 1, format!("fault {k}"))));
+        let (left_out, text) = (faults.left_out(), "µ".repeat(100_000));
+        let error = CaseError { path: "a".into(), text, faults: faults.into_sorted(), left_out };
+        let told = error.render(false);
+        assert!(told.contains("fault 99") && !told.contains("fault 100"), "{told}");
+        assert!(told.contains("1000 faults found, the first of them shown"), "{told}");
+        assert!(told.contains("a:1:50") && told.len() < 10_000, "{told}");
     }
 
     #[test]

@@ -56,6 +56,7 @@ pub fn text_of(path: &Path) -> Result<String, CaseError> {
         path: shown.clone(),
         text: String::new(),
         faults: vec![Fault::new(0..0, message)],
+        left_out: 0,
     };
     let metadata =
         std::fs::metadata(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
@@ -92,7 +93,9 @@ where
     match case {
         Some(case) if faults.is_empty() => Ok(case),
         _ => {
-            Err(CaseError { path: path.into(), text: text.into(), faults: with_paths(faults, root.as_ref()) })
+            let left_out = faults.left_out();
+            let faults = with_paths(faults, root.as_ref());
+            Err(CaseError { path: path.into(), text: text.into(), faults, left_out })
         }
     }
 }

@@ -1,6 +1,11 @@
 //! The tree of a case file: values with their places in the text.
 
+use std::borrow::Cow;
+
 use crate::fault::Span;
+
+/// Characters of a text that are shown when it stands at the wrong place.
+const LONGEST_SHOWN: usize = 60;
 
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,14 +57,22 @@ impl Value {
             Value::Bool(b) => format!("`{b}`"),
             Value::Integer(i) => format!("the number {i}"),
             Value::Number(x) => format!("the number {x}"),
-            Value::Text(s) => format!("the text {s:?}"),
-            Value::Name(n) => format!("`{n}`"),
-            Value::Struct(Some(n), _) | Value::Tuple(Some(n), _) => format!("`{n}(…)`"),
+            Value::Text(s) => format!("the text {:?}", short(s)),
+            Value::Name(n) => format!("`{}`", short(n)),
+            Value::Struct(Some(n), _) | Value::Tuple(Some(n), _) => format!("`{}(…)`", short(n)),
             Value::Struct(None, _) => "a group of fields `(…: …)`".into(),
             Value::Tuple(None, _) => "a group `(…)`".into(),
             Value::List(_) => "a list `[…]`".into(),
             Value::Unreadable => "something unreadable".into(),
         }
+    }
+}
+
+/// A text, or its beginning if it is long.
+fn short(text: &str) -> Cow<'_, str> {
+    match text.char_indices().nth(LONGEST_SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]).into(),
+        None => text.into(),
     }
 }
 

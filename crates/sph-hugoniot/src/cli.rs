@@ -39,7 +39,8 @@ const EXAMPLES: &str = "Examples:
   hugoniot completions bash > ~/.local/share/bash-completion/completions/hugoniot
 
 RUST_LOG=info tells of each point when start-up ends and what each block gives.
-Exit codes: 0 done, 2 bad input, 3 a point failed, 130 interrupted";
+Ctrl-C once: the points keep their states and stop; twice: the process ends at once. --resume goes on either way.
+Exit codes: 0 done, 1 a file could not be read or written, 2 bad input, 3 a point failed, 130 interrupted";
 
 /// From a case file to the shock Hugoniot u_s(u_p) of a porous solid, with uncertainty.
 #[derive(Debug, Parser)]

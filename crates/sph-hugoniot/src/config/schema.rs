@@ -15,10 +15,10 @@ use super::units::{Count, Density, Number, Pressure, Velocity, Viscosity};
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CaseSchema {
-    /// Number of the format.
-    pub format: Field<Count>,
     /// What it is called in reports.
     pub name: Field<String>,
+    /// Number of the format.
+    pub format: Field<Count>,
     /// The solid.
     pub material: Field<MaterialSchema>,
     /// Several materials, in place of one.

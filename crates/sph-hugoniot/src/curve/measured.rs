@@ -23,7 +23,7 @@ use crate::config::fault::name_hint;
 use crate::config::units::Velocity;
 
 /// Largest file that is read [bytes].
-const MAX_FILE: u64 = 1 << 24;
+const MAX_FILE: u64 = 1 << 20;
 /// Most faults of a file that are told.
 const MAX_FAULTS: usize = 20;
 /// Names of the columns; the last one is text.

@@ -10,10 +10,10 @@ use crate::case::SchemeName;
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CaseSchema {
-    /// Number of the format.
-    pub format: Field<Count>,
     /// What it is called in reports and file names.
     pub name: Field<String>,
+    /// Number of the format.
+    pub format: Field<Count>,
     /// The problem.
     pub problem: Field<ProblemSchema>,
     /// Schemes to run; all if left out.

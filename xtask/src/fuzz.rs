@@ -19,7 +19,7 @@ const MOST_MEMORY: u32 = 1024;
 type Target = (&'static str, &'static [&'static str], u32);
 
 const TARGETS: [Target; 4] = [
-    ("case_file", &["fuzz/seeds/case_file", "tests/cases/good", "tests/cases/bad", "../../cases"], 8192),
+    ("case_file", &["tests/cases/good", "tests/cases/bad", "../../cases"], 8192),
     ("measured_data", &["fuzz/seeds/measured_data"], 4096),
     ("picture", &["fuzz/seeds/picture"], 4096),
     ("checkpoint", &["fuzz/seeds/checkpoint"], 16384),

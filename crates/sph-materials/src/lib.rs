@@ -59,3 +59,8 @@ pub use jump::{Jump, ShockState};
 pub use material::Material;
 pub use sound::SoundSpeedModel;
 pub use strength::Strength;
+
+/// The example of the README, compiled by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

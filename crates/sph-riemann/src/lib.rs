@@ -58,3 +58,8 @@ pub use scheme::{FaceClosure, PackingReference, Scheme, Settings, SurfaceTreatme
 pub use simulation::{Simulation, StepReport, Totals};
 pub use stage_times::{StageTimes, StepStage};
 pub use time_step::TimeStepReason;
+
+/// The example of the README, compiled by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

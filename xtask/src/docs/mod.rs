@@ -1,8 +1,9 @@
-//! `cargo xtask docs`: rustdoc with warnings denied, the links of all Markdown files, and the guide as a book.
+//! `cargo xtask docs`: rustdoc with warnings denied, links and commands of all Markdown files, and the guide as a book.
 //!
-//! Nothing is taken from the network: formulas are plain text, and links are checked by [`links`]. The book needs
+//! Nothing is taken from the network: formulas are plain text, links are checked by [`links`], commands by [`commands`]. The book needs
 //! mdbook; without it everything else is done, and the way to get it is told.
 
+mod commands;
 mod links;
 
 use std::process::{Command, ExitCode};
@@ -13,13 +14,15 @@ use crate::{files, process};
 pub fn run() -> anyhow::Result<ExitCode> {
     let root = process::root();
     let rustdoc = process::run(&mut rustdoc())?;
-    let broken = links::check(&files::texts(&root)?, |path| root.join(path).exists());
-    for fault in &broken {
+    let (texts, exists) = (files::texts(&root)?, |path: &str| root.join(path).exists());
+    let (broken, untrue) = (links::check(&texts, exists), commands::check(&texts, exists));
+    for fault in broken.iter().chain(&untrue) {
         eprintln!("error: {fault}");
     }
-    println!("docs: {} broken links", broken.len());
+    println!("docs: {} broken links, {} commands that are none", broken.len(), untrue.len());
     let book = book()?;
-    let good = rustdoc == ExitCode::SUCCESS && broken.is_empty() && book == ExitCode::SUCCESS;
+    let good =
+        rustdoc == ExitCode::SUCCESS && broken.is_empty() && untrue.is_empty() && book == ExitCode::SUCCESS;
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

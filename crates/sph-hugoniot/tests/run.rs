@@ -7,10 +7,13 @@ use sph_io::table::Table;
 
 #[path = "../examples/one_point.rs"]
 mod one_point;
+#[path = "../examples/small_sweep.rs"]
+mod small_sweep;
 
 #[test]
-fn the_example_runs() {
+fn the_examples_run() {
     one_point::main().unwrap();
+    small_sweep::main().unwrap();
 }
 
 fn hugoniot() -> Command {

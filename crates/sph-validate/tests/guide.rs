@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+#[path = "../examples/exact_riemann.rs"]
+mod exact_riemann;
+
 use clap::Parser;
 use sph_validate::gate::GateFile;
 use sph_validate::{cli, suites, user};
@@ -67,4 +70,9 @@ fn cases_of_the_users_own_and_gates_are_read() {
     }
     assert!(cases >= 1 && gates >= 1, "{cases} cases, {gates} files of gates");
     assert!(!suites::names().is_empty());
+}
+
+#[test]
+fn the_example_finds_the_published_contact() {
+    exact_riemann::main().expect("the exact solution");
 }

@@ -6,7 +6,7 @@
 //! the fused multiply-add limit (a multiply-add counts two); `memory` is its bytes read and written once a step over the
 //! bandwidth. The best of some runs of thirty steps counts, rebuilds of the lists included.
 //!
-//! `--quick`: fewer cases and runs. `--count CASE STEPS`: nothing but these steps of a case, for a counter of instructions.
+//! `--quick`: fewer cases and runs. `--cases RUNS CASE...`: these cases, that many runs each. `--count CASE STEPS`: nothing but these steps of a case, for a counter of instructions.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -153,10 +153,13 @@ fn main() {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
         ["--count", name, steps] => count(name, steps.parse().expect("a number of steps")),
-        ["--quick"] => table(true),
-        [] => table(false),
+        ["--cases", runs, ref names @ ..] => {
+            table(true, runs.parse().expect("a number of runs"), &|case| names.contains(&case.name))
+        }
+        ["--quick"] => table(true, 3, &|case| case.quick),
+        [] => table(false, 5, &|_| true),
         _ => {
-            eprintln!("table: options are --quick, or --count CASE STEPS");
+            eprintln!("table: options are --quick, --cases RUNS CASE..., or --count CASE STEPS");
             std::process::exit(2);
         }
     }
@@ -182,7 +185,7 @@ fn steps_of<D: SolidDimension>(case: &Case, steps: u64) -> usize {
     simulation.particles().len()
 }
 
-fn table(quick: bool) {
+fn table(quick: bool, runs: usize, wanted: &dyn Fn(&Case) -> bool) {
     let machine = Machine::measure(quick);
     println!("instructions: {:?}", InstructionSet::detect());
     machine.print();
@@ -192,8 +195,7 @@ fn table(quick: bool) {
     );
     println!("% of the machine's arithmetic and of its memory, then % of the time in each stage:");
     println!("{}", StepStage::ALL.map(StepStage::name).join(", "));
-    for case in CASES.iter().filter(|c| c.quick || !quick) {
-        let runs = if quick { 3 } else { 5 };
+    for case in CASES.iter().filter(|case| wanted(case)) {
         print(case, &case.measure(runs), &machine);
     }
 }

@@ -212,9 +212,9 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
             let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
             let volume = first_line[Sides::volume::<D>()];
             let volumes = self.twice_volume * volume.abs();
-            for line in D::COUNT + 1..LANES {
-                to.first_line[line] = first_line[line];
-            }
+            // Position and volume have served.
+            let rest = D::COUNT + 1..LANES;
+            to.first_line[rest.clone()].copy_from_slice(&first_line[rest]);
             for a in 0..D::COUNT {
                 to.dx[a] = dx[a];
                 to.e[a] = dx[a] * inverse_r;

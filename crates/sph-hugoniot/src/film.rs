@@ -8,7 +8,7 @@ use sph_core::Dim2;
 use sph_window::Window;
 
 /// Frames of a film.
-const FRAMES: usize = 8;
+const FRAMES: usize = 6;
 /// Cells of the front's way between two frames.
 const APART: f64 = 0.25;
 /// Cells that are shown behind the front, and ahead of it.

@@ -17,6 +17,7 @@ use std::time::Instant;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use sph_core::Dim2;
+use sph_window::search::bisection::{self, Trial};
 use sph_window::{Observation, Window, WindowError};
 
 use crate::config::Case;
@@ -440,6 +441,32 @@ impl<'c> Point<'c> {
             harmonic_mean(&self.counted_cells()),
             precursor.as_ref(),
         );
-        one_wave.into_iter().chain(states.warnings(self.sample.cell, cells, place)).collect()
+        let search = search_warnings(self.window.audit(), harmonic_mean(&self.counted_cells()));
+        one_wave.into_iter().chain(search).chain(states.warnings(self.sample.cell, cells, place)).collect()
     }
+}
+
+/// u_in of a bisection that is farther from u_s of the front's way than this part of it is doubted.
+const SEARCH_MISS: f64 = 0.02;
+
+/// What is doubtful about a bisection that ended with u_s [m/s] of the front's way.
+fn search_warnings(trials: &[Trial], shock_velocity: f64) -> Vec<String> {
+    let mut list = Vec::new();
+    let moved = trials.iter().filter(|t| t.decision == bisection::Decision::Moved).count();
+    if moved > 0 {
+        list.push(format!(
+            "the bisection moved its bracket {moved} times: no result stood within it; hint: more samples a trial, or a \
+             bracket that holds u_s - u_p"
+        ));
+    }
+    let found = trials.iter().rfind(|t| t.decision == bisection::Decision::Found);
+    if let Some(u_in) =
+        found.map(|t| t.inlet_velocity).filter(|u| (u / shock_velocity - 1.0).abs() > SEARCH_MISS)
+    {
+        list.push(format!(
+            "the bisection ended with u_in = {u_in:.1} m/s, the way of the front gives u_s = {shock_velocity:.1} m/s: the \
+             slopes of its trials are noisy; hint: more samples a trial"
+        ));
+    }
+    list
 }

@@ -18,8 +18,10 @@ use crate::outcome::{PointOutcome, Status};
 
 /// A micrometer [1/m].
 const MICRO: f64 = 1e6;
+/// Part of the largest plastic strain at which the colors of the film end.
+const STRAIN_SHOWN: f64 = 0.6;
 /// Width of a frame of the film [points].
-const FRAME_WIDTH: f64 = 560.0;
+const FRAME_WIDTH: f64 = 480.0;
 
 /// How a run was made.
 #[derive(Clone, Debug, Default)]
@@ -231,7 +233,12 @@ fn point_section(case: &Case, outcome: &PointOutcome) -> Section {
     }
     if case.output.images && !outcome.film.is_empty() {
         section = section
-            .with_text("The front on its way through the medium, u_x above plastic strain; the medium comes from the right.")
+            .with_text(format!(
+                "The front on its way through the medium, u_x above plastic strain; the medium comes from the right. The \
+                 colors of the strain end at {STRAIN_SHOWN} of its largest value in the film, {:.2}; more has the color \
+                 of the end.",
+                largest_strain(outcome)
+            ))
             .with_strip(film(outcome));
     }
     if case.output.images && !outcome.fields.x.is_empty() {
@@ -247,20 +254,21 @@ fn point_section(case: &Case, outcome: &PointOutcome) -> Section {
     section
 }
 
+/// Largest plastic strain of the film [-].
+fn largest_strain(outcome: &PointOutcome) -> f64 {
+    f64::from(outcome.film.iter().flat_map(|f| &f.plastic_strain).fold(0.0_f32, |a, &b| a.max(b)))
+}
+
 /// The frames in one scale of color.
 fn film(outcome: &PointOutcome) -> Vec<(Picture, String)> {
     let first = outcome.film[0].time;
-    let strain =
-        outcome.film.iter().flat_map(|f| &f.plastic_strain).fold(0.0_f32, |a, &b| a.max(b)).max(0.01);
+    let strain = largest_strain(outcome).max(0.01);
     let range = (-0.3 * outcome.particle_velocity, 1.7 * outcome.particle_velocity);
     outcome
         .film
         .iter()
         .map(|frame| {
-            (
-                frame_image(frame, range, f64::from(strain)).into(),
-                format!("{:.2} ns", 1e9 * (frame.time - first)),
-            )
+            (frame_image(frame, range, strain).into(), format!("{:.2} ns", 1e9 * (frame.time - first)))
         })
         .collect()
 }
@@ -277,8 +285,9 @@ fn frame_image(frame: &Frame, velocity: (f64, f64), strain: f64) -> FieldImage {
                 .with_range(velocity.0, velocity.1),
         )
         .with_field(
+            // The few jets of the front would take the whole scale.
             Field::new("plastic strain", scaled(&frame.plastic_strain, 1.0), ColorMap::Sequential)
-                .with_range(0.0, 0.6 * strain),
+                .with_range(0.0, STRAIN_SHOWN * strain),
         )
         .with_periods(2)
 }

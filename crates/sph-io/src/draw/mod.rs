@@ -6,6 +6,8 @@
 
 pub(crate) mod axes;
 pub(crate) mod canvas;
+pub(crate) mod compact;
+pub(crate) mod palette;
 pub(crate) mod raster;
 pub(crate) mod scale;
 pub(crate) mod text;

@@ -161,6 +161,12 @@ impl FieldImage {
         layout::draw(self)?.to_png()
     }
 
+    /// The picture as a PNG for a page: half the pixels a side and a palette; the reason if it cannot be drawn.
+    pub(crate) fn to_small_png(&self) -> Result<Vec<u8>, String> {
+        self.check()?;
+        layout::draw(self)?.halved().to_palette_png()
+    }
+
     fn check(&self) -> Result<(), String> {
         let n = self.x.len();
         let lengths =

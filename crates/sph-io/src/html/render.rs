@@ -207,7 +207,7 @@ fn picture(out: &mut String, picture: &Picture, caption: &str) -> Result<(), Str
     let (kind, source) = match picture {
         Picture::Plot(figure) => ("plot", svg_source(&figure.to_svg()?)),
         Picture::Svg(text) => ("plot", svg_source(text)),
-        Picture::Fields(image) => ("fields", png_source(&image.to_png()?)),
+        Picture::Fields(image) => ("fields", png_source(&image.to_small_png()?)),
         Picture::Png(bytes) => ("fields", png_source(bytes)),
     };
     // The hidden box keeps whether the picture is grown: no script needed.

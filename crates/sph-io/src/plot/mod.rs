@@ -22,6 +22,7 @@ mod data;
 mod layout;
 mod legend;
 
+use crate::draw::compact::compact;
 use crate::{Color, IoError, atomic};
 use std::path::Path;
 
@@ -348,7 +349,7 @@ impl Figure {
     /// The figure as SVG; the reason if it cannot be drawn.
     pub(crate) fn to_svg(&self) -> Result<String, String> {
         self.check()?;
-        Ok(layout::draw(self).into_svg())
+        Ok(compact(&layout::draw(self).into_svg()))
     }
 
     /// Writes the figure as PNG, atomically.

@@ -1,7 +1,7 @@
 //! Shells that collapse to other radii, on another lattice, of another metal, and in space.
 //!
 //! R0 = 80 mm, R1 = 100 mm, n particles across the wall (D0 = 20 mm / n), both surfaces free, u = -U0 (R0/r)^(d-1), θ = 0.5, in the
-//! plane 0.65 where the inner layers part by 1.6 and more (`aluminum-50`, `beryllium-40`).
+//! plane 0.65 where the inner layers part by nearly 2 (`beryllium-40`).
 //! U0 is the velocity that stops a rigid-plastic shell at the radius in the name of the variant:
 //!
 //! * `aluminum-60`, `aluminum-50`: Verney's aluminum, rings of particles;
@@ -41,8 +41,8 @@ const INNER: f64 = 0.08;
 const OUTER: f64 = 0.1;
 /// Smoothing of a wall that thickens little.
 const SMOOTHING: f64 = 0.5;
-/// Smoothing of a wall whose inner layers part by 1.6 and more: at θ = 0.5 a kernel reaches 2 D, and at a stretch of 2 the
-/// layers would lose each other.
+/// Smoothing of a wall whose inner layers part by nearly 2: at θ = 0.5 a kernel reaches 2 D, and the layers would lose each
+/// other.
 const WIDE_SMOOTHING: f64 = 0.65;
 const ZONES: usize = 400;
 /// How long the reading must have risen again [s].
@@ -188,7 +188,7 @@ impl Problem {
     /// By how much the layers at the inner surface part; in the plane, where what is lost around is gained across.
     fn smoothing(&self) -> f64 {
         let stretch = if self.stop > 0.0 { INNER / self.stop } else { 1.2 };
-        if self.dimensions() == 2 && stretch >= 1.6 { WIDE_SMOOTHING } else { SMOOTHING }
+        if self.dimensions() == 2 && stretch > 1.8 { WIDE_SMOOTHING } else { SMOOTHING }
     }
 
     /// 2 around an axis, 3 around a point.

@@ -16,6 +16,8 @@ const LONGEST_STRIP: f64 = 16.0;
 const MOMENTS: usize = 1;
 /// Microns in a meter.
 const MICRO: f64 = 1e6;
+/// Joules in a kilojoule.
+const KILO: f64 = 1e3;
 /// Pascals in a gigapascal.
 const GIGA: f64 = 1e9;
 
@@ -40,7 +42,8 @@ fn with_moments(mut panel: Panel, outcome: &PointOutcome, value: Quantity) -> Pa
     panel
 }
 
-/// Averaged profile of a point: density (packing and own), -σ_xx and P, u_x over the distance from the front.
+/// Averaged profile of a point: density (packing and own), -σ_xx and P, u_x, specific internal energy over the distance
+/// from the front; dashed what the jump condition of energy asks of e behind.
 pub fn profile(outcome: &PointOutcome) -> Figure {
     let bins = &outcome.profile;
     let place = column(bins, |b| b.place * MICRO);
@@ -63,6 +66,22 @@ pub fn profile(outcome: &PointOutcome) -> Figure {
                 .with(Series::line("P", &place, &column(bins, |b| b.pressure / GIGA))),
         )
         .with_panel(panel("u_x [m/s]", velocity).with(Series::line("mean", &place, &column(bins, velocity))))
+        .with_panel(energy_panel(outcome, &place))
+}
+
+/// Specific internal energy, with that of the motion about the mean, and what the jump condition asks for behind:
+/// e_a + ½(Σ_a + Σ_b)(1/ρ_a - 1/ρ_b).
+fn energy_panel(outcome: &PointOutcome, place: &[f64]) -> Panel {
+    let (internal, with_motion): (Quantity, Quantity) =
+        (|b| b.internal_energy / KILO, |b| (b.internal_energy + b.fluctuation_energy) / KILO);
+    let panel = Panel::new(Axis::new("e [kJ/kg]"))
+        .with(Series::line("internal", place, &column(&outcome.profile, internal)))
+        .with(Series::line("with motion about the mean", place, &column(&outcome.profile, with_motion)));
+    let (Some(states), Some(&first)) = (outcome.states, place.first()) else { return panel };
+    let volume_loss = 1.0 / states.ahead.packing_density - 1.0 / states.behind.packing_density;
+    let gain = -0.5 * (states.ahead.stress + states.behind.stress) * volume_loss;
+    let asked = (states.ahead.internal_energy + gain) / KILO;
+    panel.with(Series::dashed("jump condition", &[first, 0.0], &[asked, asked]))
 }
 
 /// The last moment of a point: own density, σ_xx, u_x, plastic strain and slip of each particle.

@@ -116,7 +116,7 @@ fn pores(case: &Case) -> Vec<Shape> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn pores_keep_their_gaps_and_the_porosity_is_met_or_the_reason_is_named(wanted in wanted()) {

@@ -5,8 +5,9 @@
 //! stress. On the axis the shock is a normal one that stands still, so that its speed relative to the medium is that of the
 //! stream, and u_s = c_a + s_a u_p gives the pressure behind it: 194 GPa. The strength of copper, 0.35 GPa, does not matter.
 //!
-//! It comes out within a tenth. The solver's contacts are acoustic, made for waves weak against the bulk modulus of 138 GPa,
-//! and the bow shock still moves a little when it is looked at.
+//! When it is looked at the shock still moves against the stream, with some v = 480 m/s. Then the enthalpy behind it is
+//! U²/2 + v (U - u): 1.04 of U²/2 with u = 5287 m/s, and 1.06 is found. The rest is within what the place of the shock is
+//! known to, a particle, and what acoustic contacts, made for waves weak against 138 GPa, miss.
 //!
 //! `cargo run --release -p sph-window --example body_in_stream`
 
@@ -65,6 +66,16 @@ impl Axis {
     }
 }
 
+/// Where the shock stands on the axis: the first matter that is slower than the mean of both sides [m].
+fn shock(window: &Window<Dim2>) -> f64 {
+    let particles = window.simulation().particles();
+    let is_behind = |&i: &usize| {
+        let dy = particles.position[1][i] - HALF.1 * SIZE;
+        dy.abs() < 1.5 * SIZE && particles.velocity[0][i] > -0.5 * (STREAM + 5287.0)
+    };
+    (0..particles.len()).filter(is_behind).map(|i| particles.position[0][i]).fold(0.0, f64::max)
+}
+
 /// Runs the stream until it is steady and prints the pressure at the nose.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let copper = sph_materials::library::material("porous-copper")?;
@@ -79,6 +90,8 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (x, y) = ((PLATE.0 * SIZE, PLATE.1 * SIZE), ((HALF.1 - HALF.0) * SIZE, (HALF.1 + HALF.0) * SIZE));
     window.hold(|place| (x.0..x.1).contains(&place.x) && (y.0..y.1).contains(&place.y))?;
 
+    // Places of the shock, one each nanosecond.
+    let mut places: Vec<(f64, f64)> = Vec::new();
     // The layer behind the shock, and all of the stretch between plate and shock.
     let (mut layer, mut stretch) = (Axis::default(), Axis::default());
     while window.time() < 16e-9 {
@@ -86,19 +99,29 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         if window.time() > 10e-9 {
             layer.add(&window, x.1, (10.0, 14.0));
             stretch.add(&window, x.1, (2.0, 14.0));
+            if places.last().is_none_or(|last| window.time() - last.0 >= 1e-9) {
+                places.push((window.time(), shock(&window)));
+            }
         }
     }
     let total = stretch.mean(stretch.enthalpy) / (0.5 * STREAM * STREAM);
     println!("a stream of {STREAM} m/s onto a plate, {} steps", window.steps());
-    println!("e + P/ρ + u²/2 ahead of the plate: {total:.3} of U²/2, expected 1");
+    println!("e + P/ρ + u²/2 ahead of the plate: {total:.3} of U²/2, 1 behind a shock that stands");
+    for (time, place) in &places {
+        println!("{:.1} ns: the shock on the axis at {:.1} µm", 1e9 * time, 1e6 * place);
+    }
+    let (first, last) = (places[0], places[places.len() - 1]);
+    let drift = (last.1 - first.1) / (last.0 - first.0);
+    let moving = 1.0 + 2.0 * drift * (STREAM - 5287.0) / (STREAM * STREAM);
+    println!("the shock moves with {drift:.0} m/s, for which {moving:.3} is expected");
     let (u, pressure) = (layer.mean(layer.velocity), layer.mean(layer.pressure));
     println!(
         "behind the bow shock: {u:.0} m/s, {:.0} GPa; at the shock itself -5287 m/s, 194 GPa",
         pressure / 1e9
     );
     println!("the ledger closes to {:.1e}", window.ledger_residual());
-    if (total - 1.0).abs() > 0.1 {
-        return Err("the total enthalpy is off by more than a tenth".into());
+    if (total - moving).abs() > 0.03 {
+        return Err("the total enthalpy is not that behind a shock that moves so".into());
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use super::raster::Raster;
 use std::collections::HashMap;
 
 /// Colors of the palette.
-const COLORS: usize = 160;
+const COLORS: usize = 255;
 
 impl Raster {
     /// Means over two by two pixels.

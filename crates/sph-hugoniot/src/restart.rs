@@ -163,7 +163,13 @@ impl Keeper {
         sample: &Sample,
         u_p: f64,
     ) -> Result<Option<(Window<Dim2>, PointProgress)>> {
-        let Some(mut loaded) = self.store.load::<SavedPoint>()? else { return Ok(None) };
+        let found = self.store.load::<SavedPoint>().with_context(|| {
+            let folder = self.folder.display();
+            format!(
+                "{folder}: no state of this point can be used; hint: without this folder it is computed anew"
+            )
+        })?;
+        let Some(mut loaded) = found else { return Ok(None) };
         for fault in &loaded.skipped {
             tracing::warn!("{fault}; the state before it is taken");
         }

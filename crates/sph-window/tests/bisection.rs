@@ -43,7 +43,7 @@ fn bisection_and_tracking_agree() {
 
 #[test]
 fn a_restored_search_has_the_bits_of_one_that_was_not() {
-    let bisection = Bisection { tolerance: 50.0, samples: 1.0, rounds: 1, ..Bisection::default() };
+    let bisection = Bisection { tolerance: 50.0, samples: 3.0, rounds: 1, ..Bisection::default() };
     let settings = settings(Search::Bisection(bisection));
     let mut straight = window(porous(), settings);
     while straight.audit().len() < 2 {

@@ -2,8 +2,9 @@
 //!
 //! Tasks of this program are read as they would be at the prompt; packages, tests, benches and examples that cargo is to run
 //! must be there. The commands of `hugoniot` and `sph-validate` are read by their own tests, `tests/guide.rs` of each; blocks of
-//! Rust run as doc tests of the crate, and may stand nowhere else.
+//! Rust run as doc tests of the crate, or stand line by line in an example.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use clap::Parser;
@@ -22,19 +23,31 @@ pub fn check(texts: &[Text], exists: impl Fn(&str) -> bool) -> Vec<Fault> {
         }
         if page.content.contains("\n```rust") && !is_tested(page, texts) {
             let message =
-                "Rust code that no doc test compiles; hint: `#[doc = include_str!(\"../README.md\")]`".into();
+                "Rust code that no doc test compiles; hint: take it line by line from an example".into();
             faults.push(Fault { path: page.path.clone(), line: 0, message });
         }
     }
     faults
 }
 
-/// True if the page is the README of a crate whose library takes it in as a doc test.
+/// True if the page is the README of a crate whose library takes it in as a doc test, or if each line of its Rust code
+/// stands in an example.
 fn is_tested(page: &Text, texts: &[Text]) -> bool {
     let library = Path::new(&page.path).with_file_name("src").join("lib.rs");
     let library = library.to_string_lossy().replace('\\', "/");
     let takes_it_in = |text: &Text| text.content.contains("include_str!(\"../README.md\")");
-    page.path.ends_with("README.md") && texts.iter().any(|text| text.path == library && takes_it_in(text))
+    if page.path.ends_with("README.md") {
+        return texts.iter().any(|text| text.path == library && takes_it_in(text));
+    }
+    let examples = texts.iter().filter(|text| text.path.contains("/examples/"));
+    let lines: BTreeSet<&str> = examples.flat_map(|text| text.content.lines()).map(str::trim).collect();
+    rust_lines(&page.content).all(|line| lines.contains(line))
+}
+
+/// Lines of Rust code of a page.
+fn rust_lines(page: &str) -> impl Iterator<Item = &str> {
+    let blocks = page.split("\n```rust").skip(1).filter_map(|rest| rest.split("\n```").next());
+    blocks.flat_map(|block| block.lines().skip(1)).map(str::trim).filter(|line| !line.is_empty())
 }
 
 /// What a page tells to type, with the line: `cargo …` at the beginning of a line of code, or alone between backticks.

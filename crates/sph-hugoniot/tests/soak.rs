@@ -64,7 +64,8 @@ impl Soak {
     fn finish(&self, out: &Path, threads: u32) {
         let output = self.command(out, threads, "1e6").output().expect("the program runs");
         let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{said}");
+        // The bisection of so coarse a case may give up: that end must then be the same, too.
+        assert!(matches!(output.status.code(), Some(0 | 3)), "{said}");
     }
 
     /// Starts and kills the run after a random time within `span`; false if it had ended before.
@@ -75,7 +76,7 @@ impl Soak {
         let mut child = self.command(out, threads, keep_every).spawn().expect("the program starts");
         std::thread::sleep(wait);
         if let Some(status) = child.try_wait().expect("a process") {
-            assert!(status.success(), "{:?}", child.wait_with_output());
+            assert!(matches!(status.code(), Some(0 | 3)), "{:?}", child.wait_with_output());
             return false;
         }
         child.kill().expect("SIGKILL");
@@ -229,7 +230,10 @@ fn tracking() {
 #[test]
 fn bisection() {
     let search = "search: Bisection(samples: 1, rounds: 1, tolerance: \"60 m/s\"), points: [\"300 m/s\"],";
-    soak("bisection", &smoke(&[("points: [\"200 m/s\", \"300 m/s\"],", search)]), 2);
+    let shipped = sph_hugoniot::template::text("smoke").expect("the template");
+    let case = shipped.replace("points: [\"200 m/s\", \"300 m/s\"],", search);
+    assert!(case.contains("Bisection"));
+    soak("bisection", &case, 2);
 }
 
 /// Two solids, pores at random places in a rectangular cell, faces closed.

@@ -91,6 +91,22 @@ fn a_legend_without_a_free_place_stands_beside_the_panel() {
 }
 
 #[test]
+fn a_legend_too_wide_for_its_side_stands_below_the_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let height = |label: &str| {
+        let mut figure = sample().with(Series::line(label, &[1.0, 2.0], &[1.0, 2.0]));
+        figure.width = 620.0;
+        figure.with_legend(LegendPosition::Outside).write_png(&path).unwrap();
+        let (width, height, _) = pixels(&path);
+        assert_eq!(width, 1240);
+        height
+    };
+    let (beside, below) = (height("short"), height("a name that leaves the panel hardly any room beside it"));
+    assert!(below > beside + 60, "{beside} {below}");
+}
+
+#[test]
 fn a_field_image_has_the_colors_of_its_values_and_of_the_void() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");

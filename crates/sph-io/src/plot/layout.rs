@@ -35,10 +35,11 @@ impl PanelPlan<'_> {
 pub(super) fn draw(figure: &Figure) -> Canvas {
     let mut legend_room = 0.0;
     let mut plans = plan(figure, legend_room);
+    let widest = legend::widest(figure);
     let legends: Vec<Option<Legend>> = plans
         .iter()
         .enumerate()
-        .map(|(idx, plan)| Some(legend::plan(plan, wanted_legend(figure, idx)?)))
+        .map(|(idx, plan)| Some(legend::plan(plan, wanted_legend(figure, idx)?, widest)))
         .collect();
     for legend in legends.iter().flatten().filter(|legend| legend.is_outside()) {
         legend_room = legend.width().max(legend_room);
@@ -47,7 +48,8 @@ pub(super) fn draw(figure: &Figure) -> Canvas {
         plans = plan(figure, legend_room + RIM);
     }
     let bottom = plans.last().map_or(0.0, |plan| plan.area.bottom);
-    let mut canvas = Canvas::new(figure.width, bottom + axes::bottom_room() + RIM);
+    let below = legends.last().and_then(|legend| legend.as_ref()).map_or(0.0, Legend::room_below);
+    let mut canvas = Canvas::new(figure.width, bottom + axes::bottom_room() + below + RIM);
     let tick_width = plans.iter().map(|plan| plan.y.tick_width()).fold(0.0, f64::max);
     for (plan, legend) in plans.iter().zip(&legends) {
         draw_panel(&mut canvas, plan, legend.as_ref(), tick_width);

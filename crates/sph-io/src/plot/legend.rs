@@ -1,8 +1,9 @@
 //! The legend, and the search for a place where it hides no data.
 
 use super::layout::PanelPlan;
-use super::{LegendPosition, Series, data};
+use super::{Figure, LegendPosition, Series, data};
 use crate::Color;
+use crate::draw::axes;
 use crate::draw::canvas::{Anchor, Canvas, Place, Stroke};
 use crate::draw::{NOTE_SIZE, Rect, text};
 
@@ -20,19 +21,23 @@ pub(super) struct Legend {
     place: LegendPlace,
 }
 
-/// Fractions of the free width and height to the left of and above the legend, or beside the panel.
+/// Fractions of the free width and height to the left of and above the legend, or beside the panel, or below its axis.
 #[derive(Clone, Copy, PartialEq)]
 enum LegendPlace {
     Inside(f64, f64),
     Outside,
+    Below,
 }
+
+/// Part of a figure's width that a legend beside the panel may take; a wider one goes below.
+const WIDEST: f64 = 0.35;
 
 /// Places in order of preference.
 const CANDIDATES: [(f64, f64); 8] =
     [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.0), (0.5, 1.0), (1.0, 0.5), (0.0, 0.5)];
 
-/// Finds the legend of a panel a place.
-pub(super) fn plan(panel: &PanelPlan<'_>, position: LegendPosition) -> Legend {
+/// Finds the legend of a panel a place; `widest` is the width [points] that it may take beside the panel.
+pub(super) fn plan(panel: &PanelPlan<'_>, position: LegendPosition, widest: f64) -> Legend {
     let size = size(&panel.panel.series);
     let place = match position {
         LegendPosition::TopLeft => LegendPlace::Inside(0.0, 0.0),
@@ -42,7 +47,14 @@ pub(super) fn plan(panel: &PanelPlan<'_>, position: LegendPosition) -> Legend {
         LegendPosition::Auto => free_place(panel, size),
         LegendPosition::Outside | LegendPosition::Hidden => LegendPlace::Outside,
     };
+    let place = if place == LegendPlace::Outside && size.0 > widest { LegendPlace::Below } else { place };
     Legend { size, place }
+}
+
+/// Width [points] that a legend may take beside the panel of a figure. Panels above each other share their axis at the
+/// bottom: there is no room below but the last one's.
+pub(super) fn widest(figure: &Figure) -> f64 {
+    if figure.panels.len() == 1 { WIDEST * figure.width } else { f64::INFINITY }
 }
 
 fn size(series: &[Series]) -> (f64, f64) {
@@ -114,12 +126,21 @@ impl Legend {
         self.size.0
     }
 
+    /// Room that it takes below the axis [points].
+    pub fn room_below(&self) -> f64 {
+        if self.place == LegendPlace::Below { self.size.1 + INSET } else { 0.0 }
+    }
+
     fn area(&self, panel: Rect) -> Rect {
         match self.place {
             LegendPlace::Inside(left, above) => inside(panel, self.size, left, above),
             LegendPlace::Outside => {
                 let left = panel.right + INSET;
                 Rect { left, top: panel.top, right: left + self.size.0, bottom: panel.top + self.size.1 }
+            }
+            LegendPlace::Below => {
+                let (left, top) = (panel.left, panel.bottom + axes::bottom_room() + INSET);
+                Rect { left, top, right: left + self.size.0, bottom: top + self.size.1 }
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Whether a point can be believed: what is asked of it, and from where on the answer is yes.
 //!
 //! The bounds stand where the known runs leave them: porous copper with D = 1 and 2 µm at u_p ≥ 150 m/s, where the jump
-//! conditions give u_s, agrees within 0.2 %, and passes ("Reading the report" in the guide has the figures). What was as
-//! large there as anywhere else says nothing about u_s and is not judged: the virtual work of volume consistency, and the
-//! coldest particle. A verdict is a hint where to look, not a proof.
+//! conditions give u_s, agrees within 0.2 %, and passes, but for its pores at 2 µm ("Reading the report" in the guide has
+//! the figures). What was as large there as anywhere else says nothing about u_s and is not judged: the virtual work of
+//! volume consistency, and the coldest particle. A verdict is a hint where to look, not a proof.
 
 use sph_io::html::{Check, Verdict};
 

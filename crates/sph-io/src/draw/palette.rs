@@ -1,7 +1,8 @@
 //! Pictures for a page: half as many pixels a side, and one byte a pixel.
 //!
-//! The colors are those of the most frequent cells of a cube of 16 × 16 × 16 colors, each the mean of what falls into it;
-//! what falls into another cell takes the nearest of them. Color maps keep 16 steps in each channel.
+//! The colors are those of cells of a cube of 16 × 16 × 16 colors, each the mean of what falls into it: half of them the most
+//! frequent, the others those farthest from all before them, so that the rare end of a color map keeps its colors too. What
+//! falls into another cell takes the nearest.
 
 use super::raster::Raster;
 use std::collections::HashMap;
@@ -53,7 +54,8 @@ impl Raster {
         // The cell decides between equals: the same picture gives the same bytes.
         frequent.sort_by(|a, b| b.1.1.cmp(&a.1.1).then(a.0.cmp(b.0)));
         let mean = |(sum, count): ([u64; 3], u64)| sum.map(|s| ((s + count / 2) / count) as u8);
-        let palette: Vec<[u8; 3]> = frequent.iter().take(COLORS).map(|(_, sums)| mean(**sums)).collect();
+        let colors: Vec<[u8; 3]> = frequent.iter().map(|(_, sums)| mean(**sums)).collect();
+        let palette = chosen(&colors);
         let index: HashMap<[u8; 3], u8> =
             cells.iter().map(|(cell, sums)| (*cell, nearest(&palette, mean(*sums)))).collect();
         let pixels = self.rgb.chunks_exact(3).map(|pixel| index[&cell(pixel)]).collect();
@@ -65,11 +67,28 @@ fn cell(pixel: &[u8]) -> [u8; 3] {
     [pixel[0] >> 4, pixel[1] >> 4, pixel[2] >> 4]
 }
 
+/// The colors of a palette, of those in a picture with the most frequent first.
+fn chosen(colors: &[[u8; 3]]) -> Vec<[u8; 3]> {
+    let mut palette: Vec<[u8; 3]> = colors.iter().copied().take(COLORS / 2 + 1).collect();
+    let to_palette = |color: &[u8; 3]| palette.iter().map(|p| distance(p, color)).min().unwrap_or(u32::MAX);
+    let mut misses: Vec<u32> = colors.iter().map(to_palette).collect();
+    while palette.len() < COLORS.min(colors.len()) {
+        let Some(farthest) = (0..colors.len()).max_by_key(|&k| (misses[k], std::cmp::Reverse(k))) else {
+            break;
+        };
+        let color = colors[farthest];
+        palette.push(color);
+        misses.iter_mut().zip(colors).for_each(|(miss, other)| *miss = (*miss).min(distance(&color, other)));
+    }
+    palette
+}
+
 fn nearest(palette: &[[u8; 3]], color: [u8; 3]) -> u8 {
-    let distance = |other: &[u8; 3]| {
-        (0..3).map(|k| i32::from(other[k]).abs_diff(i32::from(color[k])).pow(2)).sum::<u32>()
-    };
-    (0..palette.len()).min_by_key(|&k| distance(&palette[k])).unwrap_or(0) as u8
+    (0..palette.len()).min_by_key(|&k| distance(&palette[k], &color)).unwrap_or(0) as u8
+}
+
+fn distance(a: &[u8; 3], b: &[u8; 3]) -> u32 {
+    (0..3).map(|k| u32::from(a[k].abs_diff(b[k])).pow(2)).sum()
 }
 
 #[cfg(test)]
@@ -93,6 +112,21 @@ mod tests {
             assert!((0..3).all(|k| color[k].abs_diff(pixel[k]) <= 15), "{pixel:?} {color:?}");
         }
         assert!(raster.to_palette_png().unwrap().len() < raster.to_png().unwrap().len());
+    }
+
+    #[test]
+    fn a_rare_color_far_from_all_others_is_kept() {
+        let mut rgb: Vec<u8> = (0..256_u32 * 64)
+            .flat_map(|k| {
+                let (k, shade) = (k % 4096, (k % 4096 / 64) as u8);
+                [(k % 8) as u8 * 16, (k / 8 % 8) as u8 * 16, 128 + shade]
+            })
+            .collect();
+        rgb[..3].copy_from_slice(&[250, 20, 10]);
+        let raster = Raster { width: 256, height: 64, rgb };
+        let (palette, pixels) = raster.in_palette();
+        assert_eq!(palette.len(), 3 * COLORS, "more colors than places");
+        assert_eq!(palette[3 * usize::from(pixels[0])..][..3], [250, 20, 10]);
     }
 
     #[test]

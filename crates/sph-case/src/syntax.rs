@@ -135,10 +135,13 @@ impl Parser<'_> {
             self.at += c.len_utf8();
             match c {
                 '"' => return Value::Text(out),
-                '\\' => match self.escape() {
-                    Some(c) => out.push(c),
-                    None => _ = self.fault(self.at - 1, "this escape is not known", "such as \\\" or \\\\"),
-                },
+                '\\' => {
+                    let backslash = self.at - 1;
+                    match self.escape() {
+                        Some(c) => out.push(c),
+                        None => _ = self.fault(backslash, "this escape is not known", "such as \\\" or \\\\"),
+                    }
+                }
                 c => out.push(c),
             }
         }
@@ -159,7 +162,7 @@ impl Parser<'_> {
             't' => Some('\t'),
             '\\' | '"' | '\'' => Some(c),
             'u' => {
-                let digits = self.rest().strip_prefix('{')?.split('}').next()?;
+                let (digits, _) = self.rest().strip_prefix('{')?.split_once('}')?;
                 let (code, length) = (u32::from_str_radix(digits, 16).ok()?, digits.len() + 2);
                 self.at += length;
                 char::from_u32(code)
@@ -409,6 +412,16 @@ mod tests {
         let Some(Node { value: Value::Struct(_, entries), .. }) = node else { panic!("no struct") };
         assert_eq!(faults.len(), 4, "{faults:#?}");
         assert_eq!(entries.last().unwrap().node.value, Value::Integer(5));
+    }
+
+    #[test]
+    fn escapes_that_do_not_end_or_are_not_known_are_told_and_reading_ends_within_the_text() {
+        for text in ["(a: \"\\u{110000", "(a: \"\\u{41", "(a: \"\\u{", "(a: \"\\é\")", "(a: \"\\"] {
+            let (_, faults) = read(text);
+            assert!(!faults.is_empty(), "{text}");
+            assert!(faults.iter().all(|f| text.get(f.span.clone()).is_some()), "{text}: {faults:?}");
+        }
+        assert!(read("(a: \"\\u{41}\")").1.is_empty());
     }
 
     #[test]

@@ -83,6 +83,9 @@ impl<K: Kind> Quantity<K> {
     }
 
     /// Reads number and unit.
+    ///
+    /// # Errors
+    /// In words, with a hint: no number in front, a unit that is missing, unknown or of another kind, a value that is not finite.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let split = text

@@ -1,7 +1,7 @@
-//! Particles, kernels, neighbours and corrected gradients of smoothed particle hydrodynamics, in two and three
+//! Particles, kernels, neighbors and corrected gradients of smoothed particle hydrodynamics, in two and three
 //! dimensions.
 //!
-//! This crate knows space, particles and sums over neighbours. It does not know materials, Riemann problems or files.
+//! This crate knows space, particles and sums over neighbors. It does not know materials, Riemann problems or files.
 
 pub mod correction;
 pub mod dimension;

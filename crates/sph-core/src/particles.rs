@@ -48,9 +48,9 @@ pub struct Particle<D: Dimension> {
     pub deviator: D::Tensor<f64>,
     /// Accumulated equivalent plastic strain [-].
     pub plastic_strain: f64,
-    /// Largest speed relative to a neighbour in the last step [m/s]: an input of the next time step.
+    /// Largest speed relative to a neighbor in the last step [m/s]: an input of the next time step.
     pub relative_speed: f64,
-    /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
+    /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbor lists [-].
     pub packing_excess: f64,
     /// Volume sum that it is held against, where that is its own [-]; 0 where it has not been measured.
     pub packing_reference: f64,
@@ -109,9 +109,9 @@ pub struct Particles<D: Dimension> {
     pub deviator: D::TensorColumns,
     /// Accumulated equivalent plastic strain [-].
     pub plastic_strain: Vec<f64>,
-    /// Largest speed relative to a neighbour in the last step [m/s]: an input of the next time step.
+    /// Largest speed relative to a neighbor in the last step [m/s]: an input of the next time step.
     pub relative_speed: Vec<f64>,
-    /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbour lists [-].
+    /// Excess ΔS of the volume sum over that of a perfect lattice at the last rebuild of the neighbor lists [-].
     pub packing_excess: Vec<f64>,
     /// Volume sum that it is held against, where that is its own [-]; 0 where it has not been measured.
     pub packing_reference: Vec<f64>,

@@ -183,6 +183,10 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// Runs the command; returns the exit code.
+///
+/// # Errors
+/// What ends the program with exit code 1: a file or folder that cannot be read, made or written, a terminal that is
+/// gone. Bad input, failed points and interrupts are no errors here but exit codes.
 pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
     let color = arguments.color.is_on();
     sph_io::progress::set_color(color);

@@ -1,6 +1,8 @@
 //! Published shock Hugoniot of the porous copper of the shipped case, to lay beside a computed one.
 //!
-//! \[ u_s = 226.8 + 1.886 u_p \quad (u_p \le 130), \qquad u_s = 14.58 + 3.573 u_p - 0.0003967 u_p^2 \quad (u_p > 130) \]
+//! ```text
+//! u_s = 226.8 + 1.886 u_p      (u_p ≤ 130),      u_s = 14.58 + 3.573 u_p - 0.0003967 u_p²      (u_p > 130)
+//! ```
 //!
 //! in m/s, for m = 1.35, two pores of 4.06 µm in a cell of 20 µm, up to about 600 m/s.
 //!

@@ -1,10 +1,12 @@
 //! Where an adaptive sweep puts its next points.
 //!
 //! A sweep goes in rounds. After each, the curve between neighbors is asked how far it may be from the straight line that
-//! joins them. With the second divided differences \( \kappa \) at both ends of an interval of length h:
+//! joins them. With the second divided differences `κ` at both ends of an interval of length h:
 //!
-//! \[ e = \frac{h^2 |\kappa_a \kappa_b|}{|\kappa_a| + |\kappa_b|} \quad (\kappa_a \kappa_b > 0), \qquad
-//!    e = \tfrac18 h^2 \min(|\kappa_a|, |\kappa_b|) \quad \text{otherwise} \]
+//! ```text
+//! e = (h² |κ_a κ_b|)/(|κ_a| + |κ_b|)      (κ_a κ_b > 0),
+//! e = ⅛ h² min(|κ_a|, |κ_b|)      otherwise
+//! ```
 //!
 //! The first is exact for one kink within the interval and equal spacings, and four times too large for a smooth curve:
 //! where pores shut, the Hugoniot has a kink, and it must not be missed. A kink at a point itself gives zero: there is

@@ -199,12 +199,12 @@ impl Keeper {
     }
 }
 
-/// Names of the columns with the positions of the neighbour lists.
+/// Names of the columns with the positions of the neighbor lists.
 fn list_names() -> Vec<String> {
     ["x", "y", "z"][..Dim2::COUNT].iter().map(|axis| format!("list_{axis}")).collect()
 }
 
-/// Particles, and the positions that their neighbour lists were built from.
+/// Particles, and the positions that their neighbor lists were built from.
 type Moment = (Particles<Dim2>, Option<Vec<Vec<f64>>>);
 
 /// Particles and list positions under names with a prefix.

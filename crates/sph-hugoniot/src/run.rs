@@ -82,6 +82,10 @@ impl RunEnd {
 }
 
 /// Runs all points of a case. `interrupt` is looked at after each step.
+///
+/// # Errors
+/// If a file or folder of the run cannot be read, made or written. A folder that is in use or holds another run, data that
+/// cannot be read and failed points are no errors but [`RunEnd`]s.
 pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
     let (started, began) = (Instant::now(), SystemTime::now());
     let sample = microstructure::sample(case);

@@ -6,11 +6,13 @@
 //! The precursor cannot be faster than the longitudinal wave of the stiffest medium of its porosity, in plane strain across
 //! parallel pores by the upper bound of Hashin and Hill,
 //!
-//! \\[ k^* = \frac{(1-\phi)\,k\,G}{G + \phi k}, \qquad
-//!    G^* = G + \frac{\phi}{(1-\phi)\frac{k + 2G}{2G(k + G)} - \frac1G}, \qquad
-//!    c = \sqrt{(k^* + G^*)/\rho_{00}} \\]
+//! ```text
+//! k* = (1 - φ) k G/(G + φ k),
+//! G* = G + φ/[(1 - φ)(k + 2G)/(2G (k + G)) - 1/G],
+//! c = √[(k* + G*)/ρ00]
+//! ```
 //!
-//! with \\( k = K + G/3 \\), \\( \phi = 1 - 1/m \\). The front runs as the jump conditions of shut pores say, and where both
+//! with `k = K + G/3`, `φ = 1 - 1/m`. The front runs as the jump conditions of shut pores say, and where both
 //! are equal lies the limit. It is an upper one: yielding around the pores makes a real precursor slower (2.6 to 2.8 km/s
 //! in the shipped case, where the bound says 3.5 km/s). For a solid without pores it is exact (its own two waves).
 //!
@@ -18,7 +20,9 @@
 //! more than the stress P_c that makes the walls of the pores yield throughout ([`crate::zone::crush_stress`]; 0.27 GPa in
 //! the shipped case, where a run reads 0.21), in a solid that of its Hugoniot elastic limit, and is not faster than c: below
 //!
-//! \\[ u_e = \frac{\sigma_{HEL}}{\rho_{00} c} \\]
+//! ```text
+//! u_e = σ_HEL/(ρ00 c)
+//! ```
 //!
 //! (12 m/s in the shipped case) no front separates. What neither bound sees is told after the run ([`finding`]).
 //!

@@ -10,6 +10,9 @@ use crate::config::Case;
 use crate::microstructure::Sample;
 
 /// The sample as the window repeats it.
+///
+/// # Errors
+/// If the sample cannot be fed: see [`FeedSample::new`].
 pub fn feed_sample(sample: &Sample) -> Result<FeedSample<Dim2>, WindowError> {
     let mut particles = Particles::default();
     sample.particles.iter().for_each(|&p| particles.push(p));

@@ -26,6 +26,9 @@ pub trait Watch: Sync {
     /// True when no further point should be started.
     fn interrupted(&self) -> bool;
     /// Told when a point has ended; one call at a time. An error ends the sweep.
+    ///
+    /// # Errors
+    /// If the outcome cannot be kept or shown.
     fn finished(&self, index: usize, outcome: PointOutcome) -> anyhow::Result<()>;
 }
 
@@ -41,6 +44,10 @@ pub struct Sweep<'c> {
 }
 
 /// Runs the points, `costs` being the times expected of each; returns the first error of what keeps and shows them.
+///
+/// # Errors
+/// The first error of [`Watch::keeper`] or [`Watch::finished`], or threads that cannot be started. A point that fails is an
+/// outcome, no error.
 pub fn run(sweep: Sweep<'_>, costs: &[f64], threads: usize, watch: &dyn Watch) -> anyhow::Result<()> {
     let order = by_falling_cost(costs);
     let workers = threads.clamp(1, sweep.points.len().max(1));

@@ -2,14 +2,18 @@
 //!
 //! Behind a compaction front pores shut over a length that scales with their distance
 //!
-//! \\[ s = \sqrt{L H / n} \\]
+//! ```text
+//! s = √(L H / n)
+//! ```
 //!
 //! for n pores (or inclusions) in a cell of L × H. Whether they shut at all is decided by the stress of the front against
 //! the one that makes a thick-walled cylinder yield throughout,
 //!
-//! \\[ P_c = \frac{Y}{\sqrt3} \ln\frac1\phi, \qquad \phi = 1 - \frac1m, \qquad u_c = \sqrt{\frac{P_c}{\rho_{00} a}}, \qquad a = \frac{m}{m-1} \\]
+//! ```text
+//! P_c = (Y/√3) ln(1/φ),      φ = 1 - 1/m,      u_c = √(P_c/(ρ00 a)),      a = m/(m - 1)
+//! ```
 //!
-//! where \\( \rho_{00} a u^2 \\) is the stress of a front that shuts all pores. Measured with the shipped porous copper
+//! where `ρ00 a u²` is the stress of a front that shuts all pores. Measured with the shipped porous copper
 //! (s = 14.1 µm, u_c = 103 m/s, D = 1 and 2 µm): the zone is 7 to 14 s long up to 130 m/s, where pores stay open, and at
 //! most 4.4 s from 150 m/s on. So 17 s stand behind the front up to u_c, and half of that from 2 u_c on. A medium without
 //! pores has the numerical width of a front alone: 120 D.

@@ -1,10 +1,12 @@
 //! Two states of matter and the wave between them: the Rankine-Hugoniot conditions.
 //!
-//! With \\( \Sigma = -\sigma_{xx} \\) and, in the frame of the matter ahead, \\( u_s = D - u_a \\) and
-//! \\( \Delta u = u_b - u_a \\):
+//! With `Σ = -σ_xx` and, in the frame of the matter ahead, `u_s = D - u_a` and
+//! `Δu = u_b - u_a`:
 //!
-//! \\[ \rho_a u_s = \rho_b (u_s - \Delta u), \qquad \Sigma_b - \Sigma_a = \rho_a u_s \Delta u, \qquad
-//!    \rho_a u_s (e_b - e_a + \tfrac12 \Delta u^2) = \Sigma_b \Delta u. \\]
+//! ```text
+//! ρ_a u_s = ρ_b (u_s - Δu),      Σ_b - Σ_a = ρ_a u_s Δu,
+//! ρ_a u_s (e_b - e_a + ½ Δu²) = Σ_b Δu
+//! ```
 //!
 //! Mass and momentum are paper eqs. (28), (29).
 
@@ -15,9 +17,9 @@ pub struct ShockState {
     pub density: f64,
     /// Velocity along the wave [m/s], positive in the direction of the wave.
     pub particle_velocity: f64,
-    /// Longitudinal stress \\( \sigma_{xx} \\) [Pa], positive in tension.
+    /// Longitudinal stress `σ_xx` [Pa], positive in tension.
     pub longitudinal_stress: f64,
-    /// Mean pressure [Pa], positive in compression; in a medium with open pores \\( -\sigma_{xx} \\) stands here.
+    /// Mean pressure [Pa], positive in compression; in a medium with open pores `-σ_xx` stands here.
     pub pressure: f64,
     /// Specific internal energy [J/kg].
     pub specific_internal_energy: f64,
@@ -43,7 +45,7 @@ pub struct Jump {
     pub ahead: ShockState,
     /// State that the wave leaves.
     pub behind: ShockState,
-    /// Speed \\( D \\) of the wave [m/s] in the frame in which the velocities of both states are given.
+    /// Speed `D` of the wave [m/s] in the frame in which the velocities of both states are given.
     pub wave_speed: f64,
 }
 
@@ -66,12 +68,12 @@ impl JumpResiduals {
 }
 
 impl Jump {
-    /// Speed of the wave relative to the matter ahead, \\( u_s \\) [m/s].
+    /// Speed of the wave relative to the matter ahead, `u_s` [m/s].
     pub fn shock_velocity(&self) -> f64 {
         self.wave_speed - self.ahead.particle_velocity
     }
 
-    /// Velocity that the wave gives to the matter, \\( \Delta u \\) [m/s].
+    /// Velocity that the wave gives to the matter, `Δu` [m/s].
     pub fn velocity_jump(&self) -> f64 {
         self.behind.particle_velocity - self.ahead.particle_velocity
     }

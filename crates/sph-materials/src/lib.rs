@@ -5,8 +5,8 @@
 //!
 //! # Conventions
 //!
-//! SI units. Stress is positive in tension, pressure positive in compression: \\( \sigma = -P I + S \\). The
-//! specific internal energy \\( e \\) is counted from the reference state \\( \rho = \rho_0,\; P = 0 \\) and
+//! SI units. Stress is positive in tension, pressure positive in compression: `σ = -P I + S`. The
+//! specific internal energy `e` is counted from the reference state `ρ = ρ0, P = 0` and
 //! holds all of the internal energy, that of elastic shear included.
 //!
 //! # Rooms
@@ -14,7 +14,7 @@
 //! | module | question it answers |
 //! |---|---|
 //! | [`material`] | the whole material: reference density and one choice of each model |
-//! | [`eos`] | \\( P(\rho, e) \\) and the exact sound speed of each equation of state |
+//! | [`eos`] | `P(ρ, e)` and the exact sound speed of each equation of state |
 //! | [`strength`] | elasticity, von Mises yield, return to the yield surface |
 //! | [`failure`] | what happens when the tensile strength is passed: cut-off or growth of voids |
 //! | [`spin`] | how a stress deviator turns with the matter (Jaumann rate) |

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Material {
     /// Name, for people.
     pub name: String,
-    /// Density \\( \rho_0 \\) of the undisturbed material [kg/m³].
+    /// Density `ρ0` of the undisturbed material [kg/m³].
     pub reference_density: f64,
     /// Pressure as a function of density and energy.
     pub equation_of_state: EquationOfState,
@@ -53,7 +53,7 @@ impl Material {
         self.failure.advance(damage, density, time_step, |rho| self.pressure(rho, specific_internal_energy))
     }
 
-    /// Bulk sound speed \\( c_b \\) [m/s] by the material's model, see [`crate::sound`].
+    /// Bulk sound speed `c_b` [m/s] by the material's model, see [`crate::sound`].
     ///
     /// The thermodynamic square is not taken below [`THERMODYNAMIC_FLOOR`] times the quasi-acoustic one.
     #[inline]
@@ -61,14 +61,14 @@ impl Material {
         self.bulk_sound_speed_squared(density, specific_internal_energy).sqrt()
     }
 
-    /// Longitudinal sound speed \\( c_l = \sqrt{c_b^2 + 4G/(3\rho)} \\) [m/s].
+    /// Longitudinal sound speed `c_l = √(c_b² + 4G/(3ρ))` [m/s].
     #[inline]
     pub fn longitudinal_sound_speed(&self, density: f64, specific_internal_energy: f64) -> f64 {
         let shear = 4.0 / 3.0 * self.strength.shear_modulus() / density;
         (self.bulk_sound_speed_squared(density, specific_internal_energy) + shear).sqrt()
     }
 
-    /// Transverse sound speed \\( c_t = \sqrt{G/\rho} \\) [m/s]; zero for a fluid.
+    /// Transverse sound speed `c_t = √(G/ρ)` [m/s]; zero for a fluid.
     #[inline]
     pub fn transverse_sound_speed(&self, density: f64) -> f64 {
         (self.strength.shear_modulus() / density).sqrt()

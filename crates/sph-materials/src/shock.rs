@@ -1,12 +1,14 @@
 //! The shock adiabat from any state of a solid whose deviator behind the wave is a known function of density.
 //!
-//! With \\( \Sigma = P + s \\), \\( s = -S_{xx} \\), and \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), the
-//! energy condition \\( e_b = e_a + \tfrac12 (\Sigma_a + \Sigma_b)(V_a - V_b) \\) is linear in \\( P_b \\):
+//! With `Σ = P + s`, `s = -S_xx`, and `P(ρ, e) = P(ρ, 0) + a(ρ) e`, the
+//! energy condition `e_b = e_a + ½ (Σ_a + Σ_b)(V_a - V_b)` is linear in `P_b`:
 //!
-//! \\[ P_b = \frac{P(\rho, e_a) + h (\Sigma_a + s)}{1 - h}, \qquad h = \tfrac12 a(\rho)(V_a - V_b). \\]
+//! ```text
+//! P_b = (P(ρ, e_a) + h (Σ_a + s))/(1 - h),      h = ½ a(ρ)(V_a - V_b)
+//! ```
 //!
-//! \\( h = 1 \\) is the limit of compression by one shock. Mass and momentum then give the velocity,
-//! \\( \Delta u^2 = (\Sigma_b - \Sigma_a)(V_a - V_b) \\), and one bisection over the density finds the piston's.
+//! `h = 1` is the limit of compression by one shock. Mass and momentum then give the velocity,
+//! `Δu² = (Σ_b - Σ_a)(V_a - V_b)`, and one bisection over the density finds the piston's.
 
 use crate::error::HugoniotError;
 use crate::jump::{Jump, ShockState};
@@ -18,21 +20,21 @@ const WIDEST_STEP: f64 = 0.02;
 /// Growth of the steps.
 const STEP_GROWTH: f64 = 1.05;
 
-/// One shock adiabat: a material, the state ahead and \\( s(\rho) \\) behind.
+/// One shock adiabat: a material, the state ahead and `s(ρ)` behind.
 pub(crate) struct Adiabat<'a, S> {
     pub material: &'a Material,
     pub ahead: ShockState,
-    /// \\( s = -S_{xx} \\) [Pa] behind the wave at a density [kg/m³].
+    /// `s = -S_xx` [Pa] behind the wave at a density [kg/m³].
     pub shear_stress: S,
 }
 
 impl<S: Fn(f64) -> f64> Adiabat<'_, S> {
-    /// \\( V_a - V_b \\) [m³/kg], free of cancellation.
+    /// `V_a - V_b` [m³/kg], free of cancellation.
     fn volume_loss(&self, density: f64) -> f64 {
         (density - self.ahead.density) / (density * self.ahead.density)
     }
 
-    /// \\( \Sigma_b \\) and \\( P_b \\) [Pa] at a density [kg/m³]; none beyond the limit of compression.
+    /// `Σ_b` and `P_b` [Pa] at a density [kg/m³]; none beyond the limit of compression.
     fn stress_and_pressure(&self, density: f64) -> Option<(f64, f64)> {
         let eos = &self.material.equation_of_state;
         let rho0 = self.material.reference_density;

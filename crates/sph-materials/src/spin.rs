@@ -1,14 +1,16 @@
 //! How a stress deviator turns with the matter.
 //!
-//! With the velocity gradient \\( (\nabla U)_{kl} = \partial U_k/\partial x_l \\) the spin is its antisymmetric
-//! part with the factor one half, \\( W = \tfrac12 (\nabla U - \nabla U^T) \\), and the Jaumann rate of Hooke's
+//! With the velocity gradient `(∇U)_kl = ∂U_k/∂x_l` the spin is its antisymmetric
+//! part with the factor one half, `W = ½ (∇U - ∇Uᵀ)`, and the Jaumann rate of Hooke's
 //! law reads
 //!
-//! \\[ \dot S = 2G\,(D - \tfrac13 \mathrm{tr}(D)\, I) + W S - S W. \\]
+//! ```text
+//! dS/dt = 2G (D - ⅓ tr(D) I) + W S - S W
+//! ```
 //!
-//! Over one step \\( \tau \\) with constant spin the last two terms turn S rigidly. [`rotate`] does this with
-//! the Cayley transform \\( R = (I - \tfrac12 \tau W)^{-1} (I + \tfrac12 \tau W) \\): a true rotation for any
-//! step, about the exact axis, by the angle \\( 2 \arctan(\omega\tau/2) \\), so the invariants of S stay and
+//! Over one step `τ` with constant spin the last two terms turn S rigidly. [`rotate`] does this with
+//! the Cayley transform `R = (I - ½ τ W)⁻¹ (I + ½ τ W)`: a true rotation for any
+//! step, about the exact axis, by the angle `2 arctan(ωτ/2)`, so the invariants of S stay and
 //! the angle is second-order accurate.
 //!
 //! Differences from the source: paper eqs. (22), (23) rotate by the full curl and with the opposite sign; a
@@ -22,15 +24,15 @@
 /// A 3 × 3 array, rows first.
 pub type Tensor3 = [[f64; 3]; 3];
 
-/// Spin \\( W = \tfrac12 (\nabla U - \nabla U^T) \\) [1/s] of a velocity gradient
-/// \\( \partial U_k/\partial x_l \\) [1/s].
+/// Spin `W = ½ (∇U - ∇Uᵀ)` [1/s] of a velocity gradient
+/// `∂U_k/∂x_l` [1/s].
 #[inline]
 pub fn spin(velocity_gradient: &Tensor3) -> Tensor3 {
     let g = velocity_gradient;
     std::array::from_fn(|k| std::array::from_fn(|l| 0.5 * (g[k][l] - g[l][k])))
 }
 
-/// \\( W S - S W \\) [Pa/s]: the rate at which spin W [1/s] turns a symmetric S [Pa].
+/// `W S - S W` [Pa/s]: the rate at which spin W [1/s] turns a symmetric S [Pa].
 #[inline]
 pub fn rotation_rate(spin: &Tensor3, deviator: &Tensor3) -> Tensor3 {
     let (w, s) = (spin, deviator);
@@ -54,7 +56,7 @@ pub fn elastic_rate(deviator: &Tensor3, velocity_gradient: &Tensor3, shear_modul
     rate
 }
 
-/// Turns a symmetric deviator [Pa] by the spin [1/s] over a time step [s]: \\( R S R^T \\).
+/// Turns a symmetric deviator [Pa] by the spin [1/s] over a time step [s]: `R S Rᵀ`.
 #[inline]
 pub fn rotate(deviator: &Tensor3, spin: &Tensor3, time_step: f64) -> Tensor3 {
     let r = rotation(spin, time_step);
@@ -64,8 +66,8 @@ pub fn rotate(deviator: &Tensor3, spin: &Tensor3, time_step: f64) -> Tensor3 {
     std::array::from_fn(|k| std::array::from_fn(|l| (0..3).map(|n| rs[k][n] * r[l][n]).sum()))
 }
 
-/// The Cayley rotation: with \\( A = \tfrac12 \tau W \\) of axial vector a,
-/// \\( R = I + 2 (A + A^2)/(1 + a^2) \\).
+/// The Cayley rotation: with `A = ½ τ W` of axial vector a,
+/// `R = I + 2 (A + A²)/(1 + a²)`.
 #[inline]
 fn rotation(spin: &Tensor3, time_step: f64) -> Tensor3 {
     let half = 0.5 * time_step;
@@ -82,10 +84,10 @@ fn rotation(spin: &Tensor3, time_step: f64) -> Tensor3 {
     })
 }
 
-/// [`rotate`] in plane strain, turning about z: \\( (S_{xx}, S_{yy}, S_{xy}) \\) [Pa] by \\( W_{yx} \tau \\)
+/// [`rotate`] in plane strain, turning about z: `(S_xx, S_yy, S_xy)` [Pa] by `W_yx τ`
 /// [rad].
 ///
-/// \\( S_{zz} \\) and the sum \\( S_{xx} + S_{yy} \\) stay as they are.
+/// `S_zz` and the sum `S_xx + S_yy` stay as they are.
 #[inline]
 pub fn rotate_plane(s_xx: f64, s_yy: f64, s_xy: f64, turn: f64) -> (f64, f64, f64) {
     let half = 0.5 * turn;

@@ -1,18 +1,18 @@
 //! Strength: elastic shear and von Mises perfect plasticity.
 //!
 //! Elastic rate (Hooke with the Jaumann rate of [`crate::spin`], paper eqs. (4), (26)):
-//! \\( \dot S = 2G\,(D - \tfrac13 \mathrm{tr}(D) I) + W S - S W \\).
+//! `dS/dt = 2G (D - ⅓ tr(D) I) + W S - S W`.
 //!
-//! Yield: \\( \sigma_{vM} = \sqrt{\tfrac32 S{:}S} \\) with **all** components of S, \\( S_{zz} \\) too, may not
-//! pass \\( Y \\); radial return \\( S \leftarrow S \min(1, Y/\sigma_{vM}) \\). In uniaxial strain the deviator
-//! saturates at \\( |S_{xx}| = 2Y/3 \\).
+//! Yield: `σ_vM = √(3/2 S:S)` with **all** components of S, `S_zz` too, may not
+//! pass `Y`; radial return `S ← S min(1, Y/σ_vM)`. In uniaxial strain the deviator
+//! saturates at `|S_xx| = 2Y/3`.
 //!
-//! Differences from the source: its expression of \\( \sigma_{vM} \\) leaves out \\( S_{zz} \\), which would be
+//! Differences from the source: its expression of `σ_vM` leaves out `S_zz`, which would be
 //! plane stress; plane strain is what is computed.
 //!
 //! # Validity
 //!
-//! Constant \\( G \\) and \\( Y \\): no hardening, no rate, pressure or temperature dependence.
+//! Constant `G` and `Y`: no hardening, no rate, pressure or temperature dependence.
 //!
 //! # Source
 //!
@@ -29,20 +29,20 @@ pub enum Strength {
     Fluid,
     /// Hooke's law without limit.
     Elastic {
-        /// Shear modulus \\( G \\) [Pa].
+        /// Shear modulus `G` [Pa].
         shear_modulus: f64,
     },
     /// Hooke's law up to the von Mises yield surface of fixed size.
     PerfectPlastic {
-        /// Shear modulus \\( G \\) [Pa].
+        /// Shear modulus `G` [Pa].
         shear_modulus: f64,
-        /// Yield strength \\( Y \\) in uniaxial stress [Pa].
+        /// Yield strength `Y` in uniaxial stress [Pa].
         yield_strength: f64,
     },
 }
 
 impl Strength {
-    /// Shear modulus \\( G \\) [Pa]; zero for a fluid.
+    /// Shear modulus `G` [Pa]; zero for a fluid.
     #[inline]
     pub fn shear_modulus(&self) -> f64 {
         match *self {
@@ -51,7 +51,7 @@ impl Strength {
         }
     }
 
-    /// Yield strength \\( Y \\) [Pa]; zero for a fluid, infinite for an elastic body.
+    /// Yield strength `Y` [Pa]; zero for a fluid, infinite for an elastic body.
     #[inline]
     pub fn yield_strength(&self) -> f64 {
         match *self {

@@ -63,7 +63,7 @@ fn plane(criterion: &mut Criterion) {
 
 fn space(criterion: &mut Criterion) {
     let case = Case {
-        name: "lattice, theta 0.60, 57 neighbours",
+        name: "lattice, theta 0.60, 57 neighbors",
         cells: 40,
         porous: false,
         theta: 0.6,

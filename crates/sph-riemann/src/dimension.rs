@@ -22,7 +22,7 @@ pub const fn symmetric(count: usize, a: usize, b: usize) -> usize {
     }
 }
 
-/// Least eigenvalue of L that is told from zero: a particle without neighbours has none.
+/// Least eigenvalue of L that is told from zero: a particle without neighbors has none.
 const LEAST: f64 = 1e-9;
 
 /// A dimension that solids can be simulated in: [`Dim2`] (plane strain) and [`Dim3`].

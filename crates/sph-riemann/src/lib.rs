@@ -14,14 +14,14 @@
 //! | [`contact`] | the acoustic contact, scalars only |
 //! | [`limiter`] | slope limiters |
 //! | [`scheme`] | what can be chosen: scheme, limiter, kernel, θ, Courant number, surfaces, volume consistency |
-//! | [`pass`] | pair loops in lanes: gradients and half step, contacts, time-centring |
+//! | [`pass`] | pair loops in lanes: gradients and half step, contacts, time-centering |
 //! | [`matter`] | materials in lanes |
 //! | [`prepare`], [`update`] | equations of state before the pair loops, the state at the end of the step after them |
 //! | [`surface`], [`volume`] | printed rules at free surfaces; density kept at that of the packing |
 //! | [`time_step`], [`stage_times`], [`interventions`], [`restart`], [`error`] | what their names say |
 //!
 //! Units are SI; stress is positive in tension, pressure in compression; the plane is plane strain, with masses and
-//! energies per metre of depth. This crate does not know where particles enter or leave, and touches no files.
+//! energies per meter of depth. This crate does not know where particles enter or leave, and touches no files.
 //!
 //! Invariants, each held by a test: momentum and total energy of a closed system are conserved to round-off; results
 //! have the same bits for any number of threads and any set of instructions, and after a restart; a step between two

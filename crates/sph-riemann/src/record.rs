@@ -1,6 +1,6 @@
-//! Records: what pair loops read of a neighbour, packed into whole cache lines.
+//! Records: what pair loops read of a neighbor, packed into whole cache lines.
 //!
-//! The first pass (gradients) reads [`State`] records, the second (contact) [`Sides`] records, time-centring [`Centered`]
+//! The first pass (gradients) reads [`State`] records, the second (contact) [`Sides`] records, time-centering [`Centered`]
 //! records, which take the place of the first. Numbers follow each other in a record in the order of the offsets below;
 //! the position comes first, where the halo expects it. Pairs add up to [`Sums`] records.
 
@@ -30,7 +30,7 @@ impl State {
 pub struct Sides;
 
 impl Sides {
-    /// V = m/ρ [m^d]; with a minus sign where the half step is to be centred on the true acceleration.
+    /// V = m/ρ [m^d]; with a minus sign where the half step is to be centered on the true acceleration.
     #[inline(always)]
     pub const fn volume<D: Dimension>() -> usize {
         D::COUNT
@@ -67,7 +67,7 @@ impl Sides {
     }
 }
 
-/// Offsets in the record of time-centring: that of the second pass, where the impedances of marked particles make room for δ
+/// Offsets in the record of time-centering: that of the second pass, where the impedances of marked particles make room for δ
 /// once the contacts are solved.
 pub struct Centered;
 
@@ -80,14 +80,14 @@ impl Centered {
 }
 
 /// Offsets in the record that pairs add to: force, power, raw velocity gradient; the last number of the record is the
-/// largest squared speed relative to a neighbour [m²/s²], not a sum.
+/// largest squared speed relative to a neighbor [m²/s²], not a sum.
 pub struct Sums;
 
 impl Sums {
-    /// First component of the force [N], per metre of depth in the plane.
+    /// First component of the force [N], per meter of depth in the plane.
     pub const FORCE: usize = 0;
 
-    /// Power of the contact forces [W], per metre of depth in the plane.
+    /// Power of the contact forces [W], per meter of depth in the plane.
     #[inline(always)]
     pub const fn power<D: Dimension>() -> usize {
         D::COUNT
@@ -98,7 +98,7 @@ impl Sums {
     pub const fn gradient<D: Dimension>() -> usize {
         D::COUNT + 1
     }
-    /// Largest squared speed relative to a neighbour [m²/s²].
+    /// Largest squared speed relative to a neighbor [m²/s²].
     #[inline(always)]
     pub const fn relative_speed_squared<D: SolidDimension>() -> usize {
         D::SUM_LINES * LANES - 1

@@ -1,6 +1,6 @@
 //! Stopping and going on with the same bits.
 //!
-//! A restart needs the particles in their order, the clock, and the positions that the neighbour lists were built from:
+//! A restart needs the particles in their order, the clock, and the positions that the neighbor lists were built from:
 //! built again from those, the lists are the same, slot by slot, and so is every sum.
 
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ pub struct Clock {
     pub step_count: u64,
     /// Sum over the steps of the number of particles.
     pub particle_steps: u64,
-    /// ∫ |P dV| of the density that volume consistency changed [J], per metre of depth in the plane.
+    /// ∫ |P dV| of the density that volume consistency changed [J], per meter of depth in the plane.
     pub relaxation_work: f64,
     /// How often a bound acted.
     pub interventions: Interventions,
@@ -43,7 +43,7 @@ impl<D: SolidDimension> Simulation<D> {
         }
     }
 
-    /// Positions that the present neighbour lists were built from, by axis [m]; `None` if the next step will build
+    /// Positions that the present neighbor lists were built from, by axis [m]; `None` if the next step will build
     /// new ones.
     pub fn list_positions(&self) -> Option<&[Vec<f64>]> {
         self.lists_hold().then(|| self.lists().reference())

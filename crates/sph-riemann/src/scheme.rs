@@ -34,7 +34,7 @@ impl Scheme {
     }
 }
 
-/// What stands in the place of L⁻¹ near free surfaces, where L loses its neighbours.
+/// What stands in the place of L⁻¹ near free surfaces, where L loses its neighbors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SurfaceTreatment {
     /// The rule as printed: I in place of L⁻¹ where the least eigenvalue of **L⁻¹** is below 0.75, and within a smoothing
@@ -51,7 +51,7 @@ pub enum SurfaceTreatment {
     /// L⁻¹ everywhere.
     None,
     /// K = Σ min(1/λ, cap) n⊗n over the eigenpairs of L, everywhere; velocity gradient exact in rotation, adjoint
-    /// traction, half step of the velocity centred on the true acceleration. No rule.
+    /// traction, half step of the velocity centered on the true acceleration. No rule. This project's.
     SpectralCap {
         /// Largest eigenvalue of K [-]; 2.5.
         cap: f64,
@@ -134,7 +134,7 @@ pub struct Settings {
     pub courant: f64,
     /// What is done at free surfaces; not used by [`Scheme::Csph`].
     pub surface: SurfaceTreatment,
-    /// Skin of the neighbour lists, in particle sizes [-].
+    /// Skin of the neighbor lists, in particle sizes [-].
     pub skin: f64,
     /// Keeps the density at that of the packing, or not.
     pub volume_consistency: Option<VolumeConsistency>,

@@ -51,15 +51,15 @@ pub struct StepReport<D: SolidDimension> {
     pub time_step: f64,
     /// Why it was as long as it was.
     pub reason: TimeStepReason,
-    /// True if the neighbour lists were rebuilt, and the particles sorted anew, before the step.
+    /// True if the neighbor lists were rebuilt, and the particles sorted anew, before the step.
     pub rebuilt: bool,
-    /// Momentum that imposed velocities put in [kg m/s], per metre of depth in the plane.
+    /// Momentum that imposed velocities put in [kg m/s], per meter of depth in the plane.
     pub constraint_impulse: D::Vector,
-    /// Energy that imposed velocities put in [J], per metre of depth in the plane.
+    /// Energy that imposed velocities put in [J], per meter of depth in the plane.
     pub constraint_work: f64,
 }
 
-/// Sums over all particles, per metre of depth in the plane.
+/// Sums over all particles, per meter of depth in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Totals<D: SolidDimension> {
     /// Mass [kg].
@@ -147,7 +147,7 @@ impl<D: SolidDimension> Simulation<D> {
         self.finish(report, time_step, reason, rebuilt)
     }
 
-    /// True when the next step will rebuild the neighbour lists: the moment to insert and remove particles.
+    /// True when the next step will rebuild the neighbor lists: the moment to insert and remove particles.
     pub fn lists_stale(&self) -> bool {
         !self.lists_valid
     }
@@ -235,7 +235,7 @@ impl<D: SolidDimension> Simulation<D> {
         &self.domain
     }
 
-    /// The neighbour lists of the last step.
+    /// The neighbor lists of the last step.
     pub fn lists(&self) -> &NeighborLists<D> {
         &self.lists
     }
@@ -245,7 +245,7 @@ impl<D: SolidDimension> Simulation<D> {
         &self.stage_times
     }
 
-    /// ∫ |P dV| of the density that volume consistency changed [J], per metre of depth in the plane.
+    /// ∫ |P dV| of the density that volume consistency changed [J], per meter of depth in the plane.
     pub fn relaxation_work(&self) -> f64 {
         self.relaxation_work
     }

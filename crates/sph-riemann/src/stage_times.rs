@@ -5,7 +5,7 @@ use std::time::Instant;
 /// Stages of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepStage {
-    /// Sorting particles and building neighbour lists.
+    /// Sorting particles and building neighbor lists.
     Lists,
     /// Volume sums.
     Volume,
@@ -15,7 +15,7 @@ pub enum StepStage {
     Gradient,
     /// Second pass: contacts.
     Contact,
-    /// Time-centring at free surfaces.
+    /// Time-centering at free surfaces.
     Centering,
     /// Update of the state.
     Update,
@@ -51,7 +51,7 @@ impl StepStage {
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StageTimes {
     seconds: [f64; 7],
-    /// Number of rebuilds of the neighbour lists.
+    /// Number of rebuilds of the neighbor lists.
     pub rebuilds: u64,
 }
 

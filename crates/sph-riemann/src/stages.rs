@@ -15,12 +15,12 @@ use crate::time_step::{TimeStepReason, courant_step, signal_speed};
 use crate::update::{Outcome, StepEnd, TileReport, first_broken, update};
 use crate::{prepare, surface, volume};
 
-/// Arrays that live as long as the neighbour lists.
+/// Arrays that live as long as the neighbor lists.
 #[derive(Default)]
 pub(crate) struct Scratch {
     /// Records of the first pass.
     state: Vec<Line>,
-    /// Records of the second pass, and of time-centring.
+    /// Records of the second pass, and of time-centering.
     pub(crate) sides: Vec<Line>,
     pub(crate) rows: Vec<Line>,
     /// What pairs add up to.
@@ -53,7 +53,7 @@ impl Scratch {
 }
 
 impl<D: SolidDimension> Simulation<D> {
-    /// Sorts the particles in cell order and finds their neighbours.
+    /// Sorts the particles in cell order and finds their neighbors.
     pub(crate) fn rebuild_lists(&mut self) {
         let reach = self.reach();
         let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));

@@ -1,6 +1,6 @@
 //! The time step and its reason.
 //!
-//! τ = C min D/(c_l + |U_rel|): c_l of the current state, U_rel the largest speed relative to a neighbour in the last step
+//! τ = C min D/(c_l + |U_rel|): c_l of the current state, U_rel the largest speed relative to a neighbor in the last step
 //! (paper: no time step is given; the Courant number bounds it).
 
 use std::fmt;
@@ -23,7 +23,7 @@ pub enum TimeStepReason {
         particle: u64,
         /// Its longitudinal sound speed [m/s].
         sound_speed: f64,
-        /// Its largest speed relative to a neighbour [m/s].
+        /// Its largest speed relative to a neighbor [m/s].
         relative_speed: f64,
     },
     /// The caller's limit.

@@ -21,7 +21,7 @@
 //! in a material without yield, nor within the support of the sum from an imposed particle, where space ends.
 //!
 //! Source: this project; see the guide on what the published curve misses. Valid for regular packings of one particle
-//! size per neighbourhood.
+//! size per neighborhood.
 
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};

@@ -1,4 +1,4 @@
-//! A step between two rebuilds of the neighbour lists allocates nothing.
+//! A step between two rebuilds of the neighbor lists allocates nothing.
 
 mod common;
 

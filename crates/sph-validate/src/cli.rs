@@ -97,6 +97,10 @@ impl Arguments {
 }
 
 /// Runs the command; returns the exit code.
+///
+/// # Errors
+/// If the folder of results is in use, holds runs that are neither to be kept nor replaced, or cannot be written; gates that
+/// cannot be read. Bad input, failed runs and missed gates are exit codes.
 pub fn execute(arguments: &Arguments) -> Result<u8, ValidateError> {
     if let Some(path) = &arguments.case {
         return match user::load(path) {

@@ -150,6 +150,9 @@ meant!(Figure, Limit, Order);
 
 impl GateFile {
     /// Reads the gates of a suite from the text of its file; an empty text has no gates.
+    ///
+    /// # Errors
+    /// [`ValidateError::Gates`] for a text that is not RON of this form, or a printed figure that is no number.
     pub fn read(suite: &str, text: &str) -> Result<Self, ValidateError> {
         if text.is_empty() {
             return Ok(Self::default());

@@ -12,6 +12,9 @@ use crate::runner::{Ended, suites_of};
 use crate::suites::Drawing;
 
 /// The page of a report.
+///
+/// # Errors
+/// If the gates of a suite cannot be read or one of its pictures cannot be drawn.
 pub fn page(report: &Report, ended: &[Ended<'_>]) -> Result<Page, ValidateError> {
     let (verdict, words) = answer(report);
     let mut page = Page::new("Validation: problems with known answers")

@@ -34,6 +34,9 @@ pub struct Written {
 }
 
 /// Draws all pictures of the runs that have ended into `folder`.
+///
+/// # Errors
+/// If a suite cannot draw its pictures or a file cannot be written.
 pub fn write_pictures(ended: &[Ended<'_>], folder: &Path) -> Result<Vec<Written>, ValidateError> {
     let mut written = Vec::new();
     for suite in crate::runner::suites_of(ended) {

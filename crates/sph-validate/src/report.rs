@@ -120,6 +120,9 @@ pub struct Report {
 
 impl Report {
     /// Judges what has ended; failed runs are kept as records.
+    ///
+    /// # Errors
+    /// If the gates of a suite cannot be read, or are meant for a figure that no run of it has.
     pub fn new(provenance: Provenance, tier: Tier, ended: &[Ended<'_>]) -> Result<Self, ValidateError> {
         let (mut suites, mut rows) = (Vec::new(), Vec::new());
         for about in suites_of(ended).into_iter().map(|suite| suite.about()) {
@@ -149,6 +152,9 @@ impl Report {
     }
 
     /// Writes `results.json`, and `results.schema.json` that says what it is made of.
+    ///
+    /// # Errors
+    /// [`ValidateError::Output`] if a file cannot be written.
     pub fn write_json(&self, folder: &Path) -> Result<(), ValidateError> {
         write_json(&folder.join("results.json"), self)?;
         write_json(&folder.join("results.schema.json"), &schema())

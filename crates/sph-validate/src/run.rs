@@ -29,6 +29,9 @@ pub struct Run<'w, D: SolidDimension> {
 impl<'w, D: SolidDimension> Run<'w, D> {
     /// The solver with one material and the given settings; [`SchemeName::settings`](crate::case::SchemeName::settings)
     /// are the usual ones.
+    ///
+    /// # Errors
+    /// [`ValidateError::Setup`] for particles, materials or settings that the solver refuses.
     pub fn new(
         case: &Case,
         watch: Watch<'w>,
@@ -45,6 +48,9 @@ impl<'w, D: SolidDimension> Run<'w, D> {
     }
 
     /// One step, ending at `end` [s] at the latest.
+    ///
+    /// # Errors
+    /// [`ValidateError::Interrupted`]; [`ValidateError::Numerical`] where the step fails.
     pub fn step(&mut self, end: f64) -> Result<(), ValidateError> {
         self.watch.check()?;
         let time = self.simulation.time();
@@ -69,6 +75,9 @@ impl<'w, D: SolidDimension> Run<'w, D> {
     }
 
     /// Steps to `end` [s]; progress is told as the share of `end`.
+    ///
+    /// # Errors
+    /// As [`Run::step`].
     pub fn advance(&mut self, end: f64) -> Result<(), ValidateError> {
         // A remainder of round-off size is no step.
         while self.simulation.time() < end * (1.0 - 1e-12) {
@@ -168,6 +177,9 @@ impl<D: SolidDimension> Content<D> {
 }
 
 /// A named material of the library.
+///
+/// # Errors
+/// [`ValidateError::Material`] for an unknown name, with the nearest one.
 pub fn material(name: &str) -> Result<Material, ValidateError> {
     library::material(name).map_err(|error| ValidateError::Material(error.to_string()))
 }

@@ -47,6 +47,9 @@ struct Kept {
 
 impl Store {
     /// Opens the finished runs of a folder of reports, which is made if it is not there.
+    ///
+    /// # Errors
+    /// If the folder cannot be made or is in use; [`ValidateError::Earlier`] if it holds runs that are to be refused.
     pub fn open(out: &Path, earlier: Earlier) -> Result<Self, ValidateError> {
         let folder = out.join("runs");
         let fault = |reason: String| ValidateError::Output { path: out.to_owned(), reason };
@@ -81,6 +84,9 @@ impl Store {
     }
 
     /// Keeps the outcome of a run.
+    ///
+    /// # Errors
+    /// [`ValidateError::Output`] if the file cannot be written.
     pub fn save(&self, outcome: &Outcome, parameters: &str) -> Result<(), ValidateError> {
         let path = self.path(&outcome.case);
         let kept =

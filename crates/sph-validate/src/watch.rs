@@ -30,6 +30,9 @@ impl<'a> Watch<'a> {
     }
 
     /// An error once the user has interrupted: looked at in each step.
+    ///
+    /// # Errors
+    /// [`ValidateError::Interrupted`].
     pub fn check(&self) -> Result<(), ValidateError> {
         if self.interrupt.load(Ordering::Relaxed) { Err(ValidateError::Interrupted) } else { Ok(()) }
     }

@@ -1,8 +1,8 @@
 //! The endless medium: one period, repeated for ever along x.
 //!
-//! [`FeedSample`] is one period \\( P \\) of the medium at rest, sorted along x. Particle \\( k \\) of period \\( n \\)
-//! stands at \\( x_{kn} = o_n + s_k \\), \\( s_k \in [0, P) \\), where the origin of the period moves with the inlet and
-//! \\( o_{n+1} = o_n + P \\). [`Feed`] holds the cursor \\( (n, k) \\) of the next particle and the origin of *its*
+//! [`FeedSample`] is one period `P` of the medium at rest, sorted along x. Particle `k` of period `n`
+//! stands at `x_kn = o_n + s_k`, `s_k ∈ [0, P)`, where the origin of the period moves with the inlet and
+//! `o_{n+1} = o_n + P`. [`Feed`] holds the cursor `(n, k)` of the next particle and the origin of *its*
 //! period only, a number of the size of the box: nothing grows with the number of periods, so that the medium stays
 //! seamless for as long as it is fed. The cursor, the origin and the next identifier are the whole state
 //! ([`FeedState`]); the initial filling of the box is the first use of the same cursor.
@@ -73,7 +73,7 @@ impl<D: Dimension> FeedSample<D> {
         (1..D::COUNT).map(|axis| self.cell.period(axis)).product()
     }
 
-    /// Mean density of the medium \\( \rho_{00} \\), pores included [kg/m³].
+    /// Mean density of the medium `ρ00`, pores included [kg/m³].
     pub fn mean_density(&self) -> f64 {
         self.particles.mass.iter().sum::<f64>() / (self.period() * self.cross_section())
     }

@@ -1,9 +1,9 @@
 //! The frame of reference of the window.
 //!
-//! The medium ahead moves with \\( -u_{in} \\), the outlet with \\( -u_{out} \\); their difference
-//! \\( u_p = u_{in} - u_{out} \\) alone is physics. Adding one velocity \\( w \\) to everything (all particles and both
-//! imposed velocities) is a change of frame and disturbs nothing: \\( u_{in} \to u_{in} - w \\). Changing
-//! \\( u_{out} \\) alone would send a wave through the box.
+//! The medium ahead moves with `-u_in`, the outlet with `-u_out`; their difference
+//! `u_p = u_in - u_out` alone is physics. Adding one velocity `w` to everything (all particles and both
+//! imposed velocities) is a change of frame and disturbs nothing: `u_in → u_in - w`. Changing
+//! `u_out` alone would send a wave through the box.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,17 +23,17 @@ impl Frame {
         Self { particle_velocity, inlet_velocity, boosted: 0.0, boosts: 0 }
     }
 
-    /// \\( u_p \\) [m/s].
+    /// `u_p` [m/s].
     pub fn particle_velocity(&self) -> f64 {
         self.particle_velocity
     }
 
-    /// \\( u_{in} \\) [m/s]: the undisturbed medium moves with its negative.
+    /// `u_in` [m/s]: the undisturbed medium moves with its negative.
     pub fn inlet_velocity(&self) -> f64 {
         self.inlet_velocity
     }
 
-    /// \\( u_{out} = u_{in} - u_p \\) [m/s]: the outlet moves with its negative.
+    /// `u_out = u_in - u_p` [m/s]: the outlet moves with its negative.
     pub fn outlet_velocity(&self) -> f64 {
         self.inlet_velocity - self.particle_velocity
     }

@@ -1,27 +1,31 @@
-//! The inlet: the medium enters with an imposed velocity \\( -u_b \\).
+//! The inlet: the medium enters with an imposed velocity `-u_b`.
 //!
-//! With [`InletKind::FixedVelocity`] \\( u_b = u_{in} \\): the elastic precursor that runs ahead of the compaction wave
+//! With [`InletKind::FixedVelocity`] `u_b = u_in`: the elastic precursor that runs ahead of the compaction wave
 //! is reflected, as from a rigid wall that moves with the medium. With [`InletKind::ImpedanceMatched`] the medium ahead
-//! of the front gets the velocity \\( -u_a \\),
+//! of the front gets the velocity `-u_a`,
 //!
-//! \\[ u_a = u_{in} - \delta, \qquad \delta = \sigma_b / Z, \qquad Z = \rho_{00}\, c \\]
+//! ```text
+//! u_a = u_in - δ,      δ = σ_b / Z,      Z = ρ00 c
+//! ```
 //!
-//! with the compressive stress \\( \sigma_b \\) that arrives, averaged over the layer just inside of the inlet: the
+//! with the compressive stress `σ_b` that arrives, averaged over the layer just inside of the inlet: the
 //! relation of a simple wave towards +x, so that the precursor leaves. What is fed is still undisturbed, of density
-//! \\( \rho_{00} \\), while the medium inside is compressed to \\( \rho_{00}/(1 - \delta/c) \\) by the wave: for the
+//! `ρ00`, while the medium inside is compressed to `ρ00/(1 - δ/c)` by the wave: for the
 //! same mass flux it must come in faster,
 //!
-//! \\[ u_b = \frac{u_a}{1 - \delta/c} . \\]
+//! ```text
+//! u_b = u_a/(1 - δ/c)
+//! ```
 //!
-//! The last step to \\( u_a \\) then compresses it at the edge of the inlet to just the stress of the precursor. Without
-//! it the medium ahead would be slower by \\( u_b\, \delta/c \\) than intended: 17 m/s in solid copper.
+//! The last step to `u_a` then compresses it at the edge of the inlet to just the stress of the precursor. Without
+//! it the medium ahead would be slower by `u_b δ/c` than intended: 17 m/s in solid copper.
 //!
-//! \\( \sigma_b \\) is the mean of \\( -\sigma_{xx} \\) over space, pores included, over whole periods of the medium,
+//! `σ_b` is the mean of `-σ_xx` over space, pores included, over whole periods of the medium,
 //! smoothed in time over the time that a wave needs for that layer. Its sign is kept: a tensile wave leaves likewise.
 //! `wave_speed` c is that of the precursor; when it is not given, the longitudinal sound speed of the matter in the
 //! layer stands for it, which is right for a medium without pores and too stiff for a porous one. There the precursor is
 //! a ramp that spreads: in porous copper of m = 1.35 (pores of 4 µm, D = 1 µm) the ratio
-//! \\( \sigma / (\rho_{00}\, \delta) \\) falls from 2.8 km/s at its head to below 2 km/s near the front, so that no single
+//! `σ / (ρ00 δ)` falls from 2.8 km/s at its head to below 2 km/s near the front, so that no single
 //! speed fits, and a part is reflected. What is reported (feed velocity, stress, profile) is what the window does, not what
 //! a perfect match would do.
 
@@ -48,11 +52,11 @@ pub enum InletKind {
 /// State of the inlet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InletState {
-    /// Smoothed compressive stress \\( \sigma_b \\) that arrives [Pa].
+    /// Smoothed compressive stress `σ_b` that arrives [Pa].
     pub stress: f64,
-    /// \\( \delta = u_{in} - u_a \\) [m/s].
+    /// `δ = u_in - u_a` [m/s].
     pub deficit: f64,
-    /// \\( \delta/c = 1 - \rho_{00}/\rho \\) of the medium ahead [-].
+    /// `δ/c = 1 - ρ00/ρ` of the medium ahead [-].
     pub compression: f64,
 }
 
@@ -65,12 +69,12 @@ impl InletState {
         self.compression = self.deficit / layer.wave_speed;
     }
 
-    /// Velocity \\( u_a \\) of the medium ahead of the front for a velocity \\( u_{in} \\) of the undisturbed one [m/s].
+    /// Velocity `u_a` of the medium ahead of the front for a velocity `u_in` of the undisturbed one [m/s].
     pub fn ahead_velocity(&self, frame_velocity: f64) -> f64 {
         frame_velocity - self.deficit
     }
 
-    /// Velocity \\( u_b \\) with which the medium is fed [m/s].
+    /// Velocity `u_b` with which the medium is fed [m/s].
     pub fn feed_velocity(&self, frame_velocity: f64) -> f64 {
         self.ahead_velocity(frame_velocity) / (1.0 - self.compression)
     }
@@ -81,9 +85,9 @@ impl InletState {
 pub struct Layer {
     /// Length along x [m].
     pub length: f64,
-    /// Mean density of the undisturbed medium \\( \rho_{00} \\) [kg/m³].
+    /// Mean density of the undisturbed medium `ρ00` [kg/m³].
     pub medium_density: f64,
-    /// Mean stress \\( \sigma_{xx} \\) over space [Pa].
+    /// Mean stress `σ_xx` over space [Pa].
     pub stress: f64,
     /// Speed of the wave that arrives [m/s].
     pub wave_speed: f64,
@@ -142,7 +146,7 @@ pub fn release<D: Dimension>(particles: &mut Particles<D>, regions: &Regions) {
     }
 }
 
-/// Gives the particles of the inlet the velocity \\( -u_b \\) [m/s]; returns the momentum and energy put in.
+/// Gives the particles of the inlet the velocity `-u_b` [m/s]; returns the momentum and energy put in.
 pub fn impose<D: Dimension>(particles: &mut Particles<D>, regions: &Regions, inlet_velocity: f64) -> Content {
     let mut sum = Content::default();
     let velocity = D::vector(|axis| if axis == 0 { -inlet_velocity } else { 0.0 });

@@ -1,11 +1,15 @@
 //! Mass, momentum and energy through both ends of the window.
 //!
-//! \\[ C(t) = C_0 + \underbrace{C_{fed}}_{\text{inlet}} - \underbrace{C_{out}}_{\text{removal plane}}
-//!   + \underbrace{C_{imposed}}_{\text{constraints}} + \underbrace{C_{boost}}_{\text{frame}} \\]
+//! ```text
+//! C(t) = C(0) + C_fed     (what came in at the inlet)
+//!             - C_out     (what went out at the removal plane)
+//!             + C_imposed (what constraints put in)
+//!             + C_boost   (what changes of the frame put in)
+//! ```
 //!
-//! for each content \\( C \\): mass, momentum and total energy (internal and kinetic). The particles' equations
-//! conserve all three to round-off, so that the ledger closes to round-off too, in any frame. A boost by \\( w \\) adds
-//! \\( M w \\) to the momentum and \\( P_x w + M w^2/2 \\) to the energy. Imposed velocities put in an impulse and work:
+//! for each content `C`: mass, momentum and total energy (internal and kinetic). The particles' equations
+//! conserve all three to round-off, so that the ledger closes to round-off too, in any frame. A boost by `w` adds
+//! `M w` to the momentum and `P_x w + M w²/2` to the energy. Imposed velocities put in an impulse and work:
 //! during a step (the solver reports them), when a particle enters a region, and when an imposed velocity is changed.
 
 use serde::{Deserialize, Serialize};

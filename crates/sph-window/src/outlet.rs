@@ -1,6 +1,6 @@
 //! The outlet: the piston that follows the shock, and the removal plane.
 //!
-//! A particle that enters outlet 1 takes the velocity \\( -u_{out} \\) along x and none across; its state goes on to
+//! A particle that enters outlet 1 takes the velocity `-u_out` along x and none across; its state goes on to
 //! evolve. In outlet 2 the state is frozen too. Left of x = 0 it is removed. Constraints only grow on the way out, so
 //! that an outlet at rest keeps its particles.
 

@@ -1,10 +1,12 @@
 //! The shock velocity from the mass balance of the plateau behind the front.
 //!
-//! Mass conservation across a front that moves with \\( v_f \\) in the box, between the medium ahead (density
-//! \\( \rho_{00} \\), velocity \\( -u_b \\)) and matter behind it (packing density \\( \rho \\), velocity \\( u_x \\)),
-//! \\( \rho_{00}(u_b + v_f) = \rho(v_f - u_x) \\), gives
+//! Mass conservation across a front that moves with `v_f` in the box, between the medium ahead (density
+//! `ρ00`, velocity `-u_b`) and matter behind it (packing density `ρ`, velocity `u_x`),
+//! `ρ00(u_b + v_f) = ρ(v_f - u_x)`, gives
 //!
-//! \\[ u_s = u_b + v_f = \frac{\sum \rho\,(u_b + u_x)}{\sum (\rho - \rho_{00})} \\]
+//! ```text
+//! u_s = u_b + v_f = Σ ρ (u_b + u_x) / Σ (ρ - ρ00)
+//! ```
 //!
 //! in any frame, from sums over the plateau alone: independent of the front's place, and hardly noisy. It holds where the
 //! plateau is steady; both estimates must agree.

@@ -16,13 +16,13 @@ const COLUMNS: usize = 4;
 pub struct Slab {
     /// Length of the slab [m].
     pub length: f64,
-    /// Mass per area \\( \int \rho\, dx \\) [kg/m²].
+    /// Mass per area `∫ ρ dx` [kg/m²].
     pub mass: f64,
-    /// Momentum along x per area \\( \int \rho u_x\, dx \\) [Pa s].
+    /// Momentum along x per area `∫ ρ u_x dx` [Pa s].
     pub momentum: f64,
-    /// Volume of the particles m/ρ per area \\( \int dx \\) over the solid [m].
+    /// Volume of the particles m/ρ per area `∫ dx` over the solid [m].
     pub volume: f64,
-    /// Stress \\( \int \sigma_{xx}\, dx \\) over the solid [Pa m].
+    /// Stress `∫ σ_xx dx` over the solid [Pa m].
     pub stress: f64,
 }
 
@@ -42,7 +42,7 @@ impl Slab {
         self.mass / self.volume
     }
 
-    /// Mean stress \\( \sigma_{xx} \\) over space, zero in the pores [Pa].
+    /// Mean stress `σ_xx` over space, zero in the pores [Pa].
     pub fn stress(&self) -> f64 {
         self.stress / self.length
     }
@@ -58,7 +58,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The profile of particles with a stress \\( \sigma_{xx} \\) [Pa] in a box of a length [m] and a cross-section
+    /// The profile of particles with a stress `σ_xx` [Pa] in a box of a length [m] and a cross-section
     /// [m, m²], means taken over `window` [m], nodes at most `resolution` [m] apart.
     pub fn new<D: Dimension>(
         particles: &Particles<D>,
@@ -144,7 +144,7 @@ impl Profile {
         std::array::from_fn(|c| (1.0 - part) * self.sums[node][c] + part * self.sums[node + 1][c])
     }
 
-    /// Rightmost place [m] where the moving mean of \\( u_x \\), coming from the right, rises through a level [m/s];
+    /// Rightmost place [m] where the moving mean of `u_x`, coming from the right, rises through a level [m/s];
     /// `None` when it stays on one side. Empty windows count as below the level.
     pub fn rightmost_crossing(&self, level: f64) -> Option<f64> {
         let velocity = |node: usize| {

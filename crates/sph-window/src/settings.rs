@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 pub struct WindowSettings {
     /// Length of the box along x [m].
     pub length: f64,
-    /// Velocity of the piston relative to the medium ahead, \\( u_p = u_{in} - u_{out} \\) [m/s].
+    /// Velocity of the piston relative to the medium ahead, `u_p = u_in - u_out` [m/s].
     pub particle_velocity: f64,
-    /// \\( u_{in} \\) at the start [m/s]; by default \\( u_p \\), that is an outlet at rest. A guess near the shock
+    /// `u_in` at the start [m/s]; by default `u_p`, that is an outlet at rest. A guess near the shock
     /// velocity starts with a front that moves slowly through the box; it must not pass the shock velocity.
     #[serde(default)]
     pub inlet_velocity: Option<f64>,
@@ -31,7 +31,7 @@ pub struct WindowSettings {
     #[serde(default)]
     pub search: Search,
     /// Way of the matter at the ends after which particles are exchanged at the latest [D]; they are exchanged at each
-    /// rebuild of the neighbour lists too.
+    /// rebuild of the neighbor lists too.
     #[serde(default = "default_exchange_drift")]
     pub exchange_drift: f64,
     /// Least length of a block of the shock velocity's history [D]; rounded up to whole periods of the medium.
@@ -87,7 +87,7 @@ impl WindowSettings {
         }
     }
 
-    /// \\( u_{in} \\) at the start [m/s].
+    /// `u_in` at the start [m/s].
     pub fn start_velocity(&self) -> f64 {
         self.inlet_velocity.unwrap_or(self.particle_velocity)
     }

@@ -1,13 +1,13 @@
 //! The shock velocity, from the way of the front through the medium.
 //!
-//! Let \\( x_f \\) be the place of the front in the box and \\( X_{fed} \\) the length of the medium that has come in.
-//! Lengths of the medium are those of the medium as it is fed, of density \\( \rho_{00} \\): in a steady state
-//! \\( \rho_{00} u_s \\) is the mass flux through the front. Their sum, the *swept length* \\( X = X_{fed} + x_f = \int (u_b + v_f)\, dt \\), is the place of the front relative to
-//! that medium. It does not know the frame, and boosts leave it continuous: \\( u_s = dX/dt \\), whatever the
+//! Let `x_f` be the place of the front in the box and `X_fed` the length of the medium that has come in.
+//! Lengths of the medium are those of the medium as it is fed, of density `ρ00`: in a steady state
+//! `ρ00 u_s` is the mass flux through the front. Their sum, the *swept length* `X = X_fed + x_f = ∫ (u_b + v_f) dt`, is the place of the front relative to
+//! that medium. It does not know the frame, and boosts leave it continuous: `u_s = dX/dt`, whatever the
 //! frame.
 //!
 //! The history keeps the times at which X first passes whole multiples of a block length, itself a whole number of
-//! periods of the medium: each [`Block`] gives one value of \\( u_s \\), their scatter its uncertainty.
+//! periods of the medium: each [`Block`] gives one value of `u_s`, their scatter its uncertainty.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +34,7 @@ impl Block {
 /// A shock velocity with its uncertainty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// \\( u_s \\) relative to the medium ahead [m/s]: length of all blocks over their time.
+    /// `u_s` relative to the medium ahead [m/s]: length of all blocks over their time.
     pub velocity: f64,
     /// Standard deviation of the blocks over the root of their number [m/s]; infinite for one block.
     pub standard_error: f64,
@@ -45,7 +45,7 @@ pub struct Estimate {
 impl Estimate {
     /// The estimate from consecutive blocks; `None` without any.
     ///
-    /// Times at which the front passes are noisy, so that neighbouring blocks err in opposite directions: the standard
+    /// Times at which the front passes are noisy, so that neighboring blocks err in opposite directions: the standard
     /// error from their scatter is on the safe side.
     pub fn from_blocks(blocks: Vec<Block>) -> Option<Self> {
         let (first, last) = (blocks.first()?, blocks.last()?);

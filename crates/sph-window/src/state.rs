@@ -31,7 +31,7 @@ pub struct Snapshot<D: Dimension> {
     pub state: WindowState,
     /// The particles, in their order.
     pub particles: Particles<D>,
-    /// Positions that the neighbour lists were built from, by axis [m]; `None` if new ones are due.
+    /// Positions that the neighbor lists were built from, by axis [m]; `None` if new ones are due.
     pub list_positions: Option<Vec<Vec<f64>>>,
 }
 

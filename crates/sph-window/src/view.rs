@@ -89,26 +89,26 @@ impl<D: SolidDimension> Window<D> {
         self.progress.observation.map(|observation| observation.front)
     }
 
-    /// Velocity \\( u_b \\) with which the medium is fed [m/s].
+    /// Velocity `u_b` with which the medium is fed [m/s].
     pub fn inlet_velocity(&self) -> f64 {
         self.progress.inlet.feed_velocity(self.progress.frame.inlet_velocity())
     }
 
-    /// Velocity \\( u_a \\) that the inlet gives to the medium ahead of the front [m/s]; it moves with its negative.
+    /// Velocity `u_a` that the inlet gives to the medium ahead of the front [m/s]; it moves with its negative.
     pub fn ahead_velocity(&self) -> f64 {
         self.progress.inlet.ahead_velocity(self.progress.frame.inlet_velocity())
     }
 
-    /// \\( u_b - u_{out} \\) [m/s]: the particle velocity that goes with [`Window::shock_velocity`], both relative to the
-    /// medium as it is fed, of density \\( \rho_{00} \\). It is \\( u_p \\) with an inlet of fixed velocity, and less with a
+    /// `u_b - u_out` [m/s]: the particle velocity that goes with [`Window::shock_velocity`], both relative to the
+    /// medium as it is fed, of density `ρ00`. It is `u_p` with an inlet of fixed velocity, and less with a
     /// matched one once the precursor has arrived.
     pub fn effective_particle_velocity(&self) -> f64 {
         self.inlet_velocity() - self.progress.frame.outlet_velocity()
     }
 
-    /// \\( u_{in} - u_b \\) [m/s]: velocity of the medium as it is fed relative to the undisturbed medium that the precursor
+    /// `u_in - u_b` [m/s]: velocity of the medium as it is fed relative to the undisturbed medium that the precursor
     /// has not reached. With a matched inlet, the shock velocity of [`Window::shock_velocity`] plus this is the speed of the
-    /// front relative to the undisturbed medium, and \\( u_p \\) the velocity of the piston in the same frame.
+    /// front relative to the undisturbed medium, and `u_p` the velocity of the piston in the same frame.
     pub fn feed_deficit(&self) -> f64 {
         self.progress.frame.inlet_velocity() - self.inlet_velocity()
     }

@@ -1,10 +1,10 @@
 //! The window: a simulation, its feed, and everything that keeps a shock front in view.
 //!
-//! One step ([`Window::step`]): when the neighbour lists are due anyway, or the matter at the ends has moved by a particle
+//! One step ([`Window::step`]): when the neighbor lists are due anyway, or the matter at the ends has moved by a particle
 //! size, particles are exchanged at both ends; then one step of the simulation; what it put in is booked; after an
 //! exchange the front is looked at, and the frame boosted if a boost is due.
 //!
-//! At the start the box holds the medium moving with \\( -u_{in} \\), and the outlet, moving with \\( -u_{out} \\), is the
+//! At the start the box holds the medium moving with `-u_in`, and the outlet, moving with `-u_out`, is the
 //! piston: a front leaves it towards +x.
 
 use crate::error::WindowError;
@@ -95,7 +95,7 @@ impl<D: SolidDimension> Window<D> {
     }
 
     /// A window that goes on from a saved state with the same bits: its particles in their saved order, and the
-    /// positions that its neighbour lists were built from, if it had any ([`Simulation::list_positions`]).
+    /// positions that its neighbor lists were built from, if it had any ([`Simulation::list_positions`]).
     ///
     /// # Errors
     ///

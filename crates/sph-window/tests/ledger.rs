@@ -61,7 +61,7 @@ fn a_restored_window_makes_the_same_steps() {
     let advance = |window: &mut Window<Dim2>, steps| (0..steps).for_each(|_| assert!(window.step().is_ok()));
     let mut straight = window(sample(), settings);
     advance(&mut straight, 1000);
-    // In the middle of the life of a neighbour list, and once more a few steps later.
+    // In the middle of the life of a neighbor list, and once more a few steps later.
     for stop in [500, 503] {
         let mut stopped = window(sample(), settings);
         advance(&mut stopped, stop);

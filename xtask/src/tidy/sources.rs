@@ -73,6 +73,9 @@ fn rust(text: &Text, findings: &mut Findings) {
     if !text.content.starts_with("//!") {
         refuse(1, "no module docs; hint: the first line is `//! What this is for.`");
     }
+    for (k, _) in text.content.lines().enumerate().filter(|(_, line)| is_raw_formula(line)) {
+        refuse(k + 1, "a formula that rustdoc shows as it is typed; hint: plain letters, as in ρ0 u_s²");
+    }
     let code = blank(&text.content);
     let silent = must_be_silent(&text.path);
     let tests = code.lines().position(|line| line.trim() == "#[cfg(test)]").unwrap_or(usize::MAX);
@@ -96,6 +99,14 @@ fn rust(text: &Text, findings: &mut Findings) {
     } else if lines > LONG {
         findings.notes.push(format!("{}: {lines} lines", text.path));
     }
+}
+
+/// True for a doc comment with marks or commands of TeX.
+fn is_raw_formula(line: &str) -> bool {
+    let line = line.trim_start();
+    let is_doc = line.starts_with("//!") || line.starts_with("///");
+    is_doc
+        && ["\\(", "\\[", "\\frac", "\\tfrac", "\\sqrt", "\\rho", "$$"].iter().any(|mark| line.contains(mark))
 }
 
 /// Libraries: sources below `src/` that are neither programs nor tests.
@@ -170,6 +181,15 @@ mod tests {
             faults.iter().zip(["1: no module", "3: a library", "4: unsafe", "7: an ign", "8: dbg"])
         {
             assert!(fault.starts_with(start), "{fault}");
+        }
+    }
+
+    #[test]
+    fn formulas_that_would_not_be_typeset_are_refused() {
+        let docs = "//! P = ρ0 c², `c = √(B/ρ)` [m/s].\n";
+        assert_eq!(faults_of("crates/a/src/x.rs", docs), [""; 0]);
+        for raw in [r"//! \\( \rho_0 \\)", r"//! \[ P = B \]", "//! $$ P = B $$"] {
+            assert_eq!(faults_of("crates/a/src/x.rs", raw).len(), 1, "{raw}");
         }
     }
 

@@ -1,10 +1,10 @@
-//! Cells: the order of particles in memory, and the search for neighbours.
+//! Cells: the order of particles in memory, and the search for neighbors.
 
 use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
 use crate::particles::Particles;
 
-/// Width, in cells, of the strips that particles are ordered along. Neighbours are then a few lines of a strip away, or
+/// Width, in cells, of the strips that particles are ordered along. Neighbors are then a few lines of a strip away, or
 /// in the strip beside it: near in memory also where a row of the whole box would not fit a cache.
 const STRIP: usize = 8;
 

@@ -2,7 +2,7 @@
 //!
 //! Pair loops know nothing of periodicity. Every image of a particle that lies within `reach` of the box stands behind
 //! the particles in the arrays that pair loops read; it is refreshed from its owner at one call. This is also where
-//! particles of neighbouring processes would enter.
+//! particles of neighboring processes would enter.
 
 use crate::dimension::Dimension;
 use crate::domain::Domain;

@@ -1,10 +1,10 @@
-//! Neighbour lists with a skin.
+//! Neighbor lists with a skin.
 //!
 //! Pairs with r_ij < s (D_i + D_j) + skin are listed, both ways (i sees j and j sees i), so that each particle gathers
 //! its own sums in a fixed order. The lists stay good until some pair has moved by more than the skin against each
 //! other; [`NeighborLists::outlived`] tells it from the ranges of displacement in tiles of particles that see each other.
 //!
-//! **Layout.** Eight consecutive particles are a block; slot k of a block holds the k-th neighbour of each. Lists of a
+//! **Layout.** Eight consecutive particles are a block; slot k of a block holds the k-th neighbor of each. Lists of a
 //! block are padded to the longest with the particle itself, at distance zero, whose terms vanish. [`TILE_BLOCKS`]
 //! blocks are a tile: the unit of parallel work. Indices up to `n_padded` are particles; those behind are [`Halo`]
 //! copies. The first slots of a block list each pair once, for loops that serve both particles of a pair: [`TileLists`].
@@ -36,7 +36,7 @@ pub const TILE: usize = TILE_BLOCKS * LANES;
 /// Least and largest displacement of the particles of a tile, by axis [m].
 pub type DisplacementRange = [(f64, f64); 3];
 
-/// Neighbour lists of all particles, in blocks and tiles.
+/// Neighbor lists of all particles, in blocks and tiles.
 #[derive(Clone, Debug, Default)]
 pub struct NeighborLists<D: Dimension> {
     n_particles: usize,
@@ -50,7 +50,7 @@ pub struct NeighborLists<D: Dimension> {
 /// What decides which pairs are listed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// s in r_ij < s (D_i + D_j): kernel support (in smoothing lengths) times θ.
+    /// s in r_ij < s (D_i + D_j): kernel support (in smoothing lengths) times θ [-].
     pub factor: f64,
     /// Distance beyond it within which pairs are listed too [m].
     pub skin: f64,

@@ -1,7 +1,7 @@
 //! The search for the pairs of a tile: eight candidates at a time.
 //!
 //! **Who owns a pair** is decided along a skew line, d = x + 0.3 y + 0.09 z: the particle with the lower d does. Each
-//! particle then owns half of its neighbours, on a lattice exactly: blocks are filled evenly. The difference of two
+//! particle then owns half of its neighbors, on a lattice exactly: blocks are filled evenly. The difference of two
 //! particles is computed so that it changes nothing but its sign when they change places, images included; what ties is
 //! decided by numbers.
 
@@ -153,13 +153,13 @@ impl<'a, D: Dimension> Search<'a, D> {
     }
 }
 
-/// Neighbours of one particle, as they are found.
+/// Neighbors of one particle, as they are found.
 struct Neighbors {
     owned: Vec<u32>,
     owned_skin: Vec<u32>,
     others: Vec<u32>,
     others_skin: Vec<u32>,
-    /// By tile: true if it holds a neighbour of the particles so far.
+    /// By tile: true if it holds a neighbor of the particles so far.
     seen: Vec<bool>,
 }
 

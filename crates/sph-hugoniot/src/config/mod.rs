@@ -22,11 +22,17 @@ pub use case::Case;
 pub use sph_case::{CaseError, Fault, fault, field, units};
 
 /// Reads a case file.
+///
+/// # Errors
+/// [`CaseError`] with every fault of the file, each at its place; also if the file cannot be read.
 pub fn load(path: &Path) -> Result<Case, CaseError> {
     load_with(path, None)
 }
 
 /// Reads a case file with another particle size [m] than it has; all that must hold is checked with that one.
+///
+/// # Errors
+/// As [`load`].
 pub fn load_with(path: &Path, particle_size: Option<f64>) -> Result<Case, CaseError> {
     let text = sph_case::text_of(path)?;
     let shown = path.display().to_string();
@@ -41,6 +47,9 @@ pub fn load_with(path: &Path, particle_size: Option<f64>) -> Result<Case, CaseEr
 }
 
 /// Reads a case from text; `path` stands in the messages, and files that the case names are looked for beside it.
+///
+/// # Errors
+/// [`CaseError`] with every fault of the text, each at its place.
 pub fn parse(text: &str, path: &str) -> Result<Case, CaseError> {
     parse_with(text, path, None)
 }

@@ -1,6 +1,8 @@
 //! A crush curve α(P) calibrated on the points of a run.
 //!
-//! \[ \alpha(P) = 1 + (\alpha_0 - 1) \left( \frac{P_s - P}{P_s - P_e} \right)^n \]
+//! ```text
+//! α(P) = 1 + (α0 - 1) ( (P_s - P)/(P_s - P_e) )ⁿ
+//! ```
 //!
 //! Each point gives one pair by the jump conditions: P is -σ_xx behind the wave, σ_HEL included, and α the density of
 //! the solid at that stress over the density behind the wave ([`PorousMedium::distension_behind`]). With this P the jump

@@ -1,7 +1,9 @@
 //! Weighted least squares, linear and not, with covariance.
 //!
-//! \[ \chi^2 = \sum_i \left( \frac{y_i - f(x_i; a)}{\sigma_i} \right)^2, \qquad
-//!    C = (J^T W J)^{-1}, \quad J_{ik} = \partial f(x_i)/\partial a_k, \quad W = \mathrm{diag}(\sigma_i^{-2}) \]
+//! ```text
+//! χ² = Σ_i ( (y_i - f(x_i; a))/σ_i )²,
+//! C = (Jᵀ W J)⁻¹,      J_ik = ∂f(x_i)/∂a_k,      W = diag(σ_i⁻²)
+//! ```
 //!
 //! Columns of J are scaled to equal length before the singular values are taken, so that parameters of different units
 //! do not spoil the condition.

@@ -2,7 +2,9 @@
 //!
 //! From u_s and u_p the jump conditions give stress and density behind the compaction wave, as they do from an experiment:
 //!
-//! \[ \sigma = \sigma_{HEL} + \rho_{00} u_s u_p, \qquad \rho = \rho_{00} \frac{u_s}{u_s - u_p}, \qquad V = 1/\rho \]
+//! ```text
+//! σ = σ_HEL + ρ00 u_s u_p,      ρ = ρ00 u_s/(u_s - u_p),      V = 1/ρ
+//! ```
 //!
 //! with the standard error of u_s carried along. The averaged profiles give states by another way, without errors; both
 //! stand in the table. They agree where the plateau behind the front has come to u_p. Where pores stay open the wave is

@@ -5,12 +5,16 @@
 //! so that the wave is a **ramp that spreads**. It is read level by level, in the way of Lagrangian gauges: the level u of
 //! the particle velocity runs through the matter with
 //!
-//! \\[ c(u) = \frac{w(u) - u}{1 - \epsilon(u)}, \qquad \epsilon(u) = 1 - \frac{\rho_{00}}{\rho} = \int_0^u \frac{du'}{c} \\]
+//! ```text
+//! c(u) = (w(u) - u)/(1 - ε(u)),      ε(u) = 1 - ρ00/ρ = ∫₀ᵘ du'/c
+//! ```
 //!
 //! where w is its speed in the undisturbed medium's frame: the slope of its place against time. The conservation laws of
 //! a ramp follow from its levels; σ is counted positive in compression here:
 //!
-//! \\[ \sigma(u) = \rho_{00} \int_0^u c\,du', \qquad e(u) = \frac{1}{\rho_{00}} \int_0^u \frac{\sigma}{c}\,du'. \\]
+//! ```text
+//! σ(u) = ρ00 ∫₀ᵘ c du',      e(u) = (1/ρ00) ∫₀ᵘ (σ/c) du'
+//! ```
 //!
 //! The first of them is exact at any moment, steady or not; the others hold where levels keep their speed. With one speed
 //! for all levels they are the jump conditions of a steady wave. The state behind is read two cells ahead of the compaction

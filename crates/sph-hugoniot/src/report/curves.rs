@@ -166,6 +166,9 @@ impl<'c> Curves<'c> {
     }
 
     /// Writes tables, exports and pictures into the folder of a run.
+    ///
+    /// # Errors
+    /// If a file or the folder cannot be written.
     pub fn write(&self, report: &Report) -> Result<()> {
         let folder = report.folder().join("curve");
         std::fs::create_dir_all(&folder)?;

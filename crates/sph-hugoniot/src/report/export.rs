@@ -23,6 +23,9 @@ pub const TABLE_SCHEMA: &str = include_str!("table.schema.json");
 const GIGA: f64 = 1e9;
 
 /// Writes the exports into a folder.
+///
+/// # Errors
+/// If a file cannot be written.
 pub fn write(curves: &Curves<'_>, folder: &Path) -> Result<()> {
     let text = |name: &str, text: &str| sph_io::write_atomic(folder.join(name), text.as_bytes());
     text("table.schema.json", TABLE_SCHEMA)?;

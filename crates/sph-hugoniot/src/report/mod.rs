@@ -44,6 +44,9 @@ pub struct Report {
 
 impl Report {
     /// Makes the folder and puts the case into it.
+    ///
+    /// # Errors
+    /// If a file or folder cannot be written.
     pub fn create(folder: &Path, case: &Case, case_text: &str) -> Result<Self> {
         for part in ["", "plots", "points"] {
             let path = folder.join(part);
@@ -66,6 +69,9 @@ impl Report {
     }
 
     /// Writes the table of the points that are finished.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
     pub fn write_table(&self, case: &Case, sample: &Sample, outcomes: &[&PointOutcome]) -> Result<()> {
         let table = table::hugoniot(case, sample, outcomes);
         table.write_csv(self.folder.join("hugoniot.csv"))?;
@@ -73,6 +79,9 @@ impl Report {
     }
 
     /// Writes the tables and pictures of one point.
+    ///
+    /// # Errors
+    /// If a file or folder cannot be written.
     pub fn write_point(&self, case: &Case, outcome: &PointOutcome) -> Result<()> {
         let stem = outcome.file_stem();
         let folder = self.point_folder(outcome.particle_velocity);
@@ -101,11 +110,17 @@ impl Report {
     }
 
     /// Writes what is made of all points together: tables, exports, pictures; nothing without a measured one.
+    ///
+    /// # Errors
+    /// If a file or folder cannot be written.
     pub fn write_curves(&self, curves: &Curves<'_>) -> Result<()> {
         if curves.curve.points.is_empty() { Ok(()) } else { curves.write(self) }
     }
 
     /// Writes the page with everything on it.
+    ///
+    /// # Errors
+    /// If a file or folder cannot be written.
     pub fn write_page(
         &self,
         curves: &Curves<'_>,

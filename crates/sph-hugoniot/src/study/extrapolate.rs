@@ -1,8 +1,10 @@
 //! u_s at vanishing particle size, with an uncertainty.
 //!
-//! \[ u_s(D) = u_0 + A D^p \]
+//! ```text
+//! u_s(D) = u0 + A D^p
+//! ```
 //!
-//! For an assumed order p this is a straight line in \( D^p \), fitted by least squares with the standard errors of u_s
+//! For an assumed order p this is a straight line in `D^p`, fitted by least squares with the standard errors of u_s
 //! (for two particle sizes: Richardson's formula). The order is rarely known: with pores that shut it is 1 or less, in smooth
 //! flow it is 2. So p = 1 and p = 2 are both taken, and with three sizes or more also the order that fits best, where it lies
 //! within [½, 3] and the changes of u_s go one way and exceed their noise. The result is the fit of the observed order,

@@ -1,15 +1,17 @@
 //! Ideal gas with constant specific heats.
 //!
-//! \\[ P = (\gamma - 1)\, \rho\, e \\]
+//! ```text
+//! P = (γ - 1) ρ e
+//! ```
 //!
-//! Thermodynamic sound speed: \\( c_b^2 = \gamma (\gamma - 1)\, e \\). There is no cold pressure and so no
+//! Thermodynamic sound speed: `c_b² = γ (γ - 1) e`. There is no cold pressure and so no
 //! quasi-acoustic speed (B = 0): such a material needs [`crate::SoundSpeedModel::Thermodynamic`].
 //!
 //! # Validity
 //!
 //! Gases far from condensation; e > 0. Here for shock-tube problems of the contact alone, with
 //! [`crate::Strength::Fluid`]: a gas at e = 0 has neither pressure nor sound, and no contact can be solved.
-//! One shock compresses to \\( (\gamma + 1)/(\gamma - 1) \\) at most.
+//! One shock compresses to `(γ + 1)/(γ - 1)` at most.
 //!
 //! # Source
 //!
@@ -22,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IdealGas {
-    /// Ratio of specific heats \\( \gamma \\) [1].
+    /// Ratio of specific heats `γ` [1].
     pub gamma: f64,
 }
 

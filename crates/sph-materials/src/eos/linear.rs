@@ -1,13 +1,15 @@
 //! Linear equation of state: constant sound speed.
 //!
-//! \\[ P = c_0^2 (\rho - \rho_0) \\]
+//! ```text
+//! P = c0² (ρ - ρ0)
+//! ```
 //!
-//! The energy has no part in it; the thermodynamic sound speed is \\( c_0 \\) at every density, the
-//! quasi-acoustic one \\( c_0 \sqrt{\rho_0/\rho} \\).
+//! The energy has no part in it; the thermodynamic sound speed is `c0` at every density, the
+//! quasi-acoustic one `c0 √(ρ0/ρ)`.
 //!
 //! # Validity
 //!
-//! All positive densities as a formula, with \\( P \to -\rho_0 c_0^2 \\) for \\( \rho \to 0 \\). As physics:
+//! All positive densities as a formula, with `P → -ρ0 c0²` for `ρ → 0`. As physics:
 //! small density changes, sound waves.
 //!
 //! # Source
@@ -21,7 +23,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Linear {
-    /// Bulk sound speed \\( c_0 \\) [m/s].
+    /// Bulk sound speed `c0` [m/s].
     pub bulk_sound_speed: f64,
 }
 

@@ -1,15 +1,17 @@
 //! Linear equation of state with a thermal part of ideal-gas form.
 //!
-//! \\[ P = c_0^2 (\rho - \rho_0) + (\Gamma - 1)\, \rho\, e \\]
+//! ```text
+//! P = c0² (ρ - ρ0) + (Γ - 1) ρ e
+//! ```
 //!
-//! Thermodynamic sound speed: \\( c_b^2 = c_0^2 + (\Gamma - 1)\, e + (\Gamma - 1)\, P/\rho \\); quasi-acoustic:
-//! \\( c_b^2 = \rho_0 c_0^2/\rho \\).
+//! Thermodynamic sound speed: `c_b² = c0² + (Γ - 1) e + (Γ - 1) P/ρ`; quasi-acoustic:
+//! `c_b² = ρ0 c0²/ρ`.
 //!
 //! # Validity
 //!
-//! All positive densities as a formula; \\( c_b^2 \\) stays positive unless the matter is far expanded
-//! (\\( P < -\rho c_0^2/(\Gamma - 1) \\) at e = 0). One shock from rest cannot compress beyond
-//! \\( \rho/\rho_0 = 1 + 2/(\Gamma - 1) \\). As physics: moderate compression, heat of plastic work included.
+//! All positive densities as a formula; `c_b²` stays positive unless the matter is far expanded
+//! (`P < -ρ c0²/(Γ - 1)` at e = 0). One shock from rest cannot compress beyond
+//! `ρ/ρ0 = 1 + 2/(Γ - 1)`. As physics: moderate compression, heat of plastic work included.
 //!
 //! # Source
 //!
@@ -22,9 +24,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinearGamma {
-    /// Bulk sound speed \\( c_0 \\) of the cold material [m/s].
+    /// Bulk sound speed `c0` of the cold material [m/s].
     pub bulk_sound_speed: f64,
-    /// \\( \Gamma \\); the Grüneisen coefficient is \\( \Gamma - 1 \\) [1].
+    /// `Γ`; the Grüneisen coefficient is `Γ - 1` [1].
     pub gamma: f64,
 }
 

@@ -1,8 +1,10 @@
 //! Logarithmic equation of state: constant bulk modulus.
 //!
-//! \\[ P = B \ln(\rho/\rho_0) \\]
+//! ```text
+//! P = B ln(ρ/ρ0)
+//! ```
 //!
-//! The energy has no part in it; \\( c_b^2 = B/\rho \\) exactly, so the quasi-acoustic and the thermodynamic
+//! The energy has no part in it; `c_b² = B/ρ` exactly, so the quasi-acoustic and the thermodynamic
 //! sound speed agree. Together with logarithmic strain it makes the elastic-plastic waves of
 //! [`crate::hugoniot`] solvable by hand.
 //!
@@ -22,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Logarithmic {
-    /// Bulk modulus \\( B \\) [Pa].
+    /// Bulk modulus `B` [Pa].
     pub bulk_modulus: f64,
 }
 

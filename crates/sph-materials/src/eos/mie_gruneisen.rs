@@ -1,25 +1,27 @@
-//! Mie-Grüneisen equation of state on the solid's linear shock Hugoniot \\( u_s = c_a + s_a u_p \\).
+//! Mie-Grüneisen equation of state on the solid's linear shock Hugoniot `u_s = c_a + s_a u_p`.
 //!
-//! \\[ P(\rho, e) = P_{ref} + \gamma \rho\, (e - e_{ref}), \qquad x = \rho_0/\rho, \quad \eta = 1 - x \\]
+//! ```text
+//! P(ρ, e) = P_ref + γ ρ (e - e_ref),      x = ρ0/ρ,      η = 1 - x
+//! ```
 //!
-//! * compression, \\( x \le 1 \\): \\( P_{ref} = \rho_0 c_a^2 \eta / (1 - s_a \eta)^2 \\),
-//!   \\( e_{ref} = \tfrac12 [c_a \eta / (1 - s_a \eta)]^2 \\): the Rankine-Hugoniot states
-//!   \\( P = \rho_0 u_s u_p \\), \\( e = u_p^2/2 \\);
-//! * expansion, \\( x > 1 \\): \\( P_{ref} = \rho_0 c_a^2 \eta \\), \\( e_{ref} = \tfrac12 c_a^2 \eta^2 \\).
+//! * compression, `x ≤ 1`: `P_ref = ρ0 c_a² η / (1 - s_a η)²`,
+//!   `e_ref = ½ [c_a η / (1 - s_a η)]²`: the Rankine-Hugoniot states
+//!   `P = ρ0 u_s u_p`, `e = u_p²/2`;
+//! * expansion, `x > 1`: `P_ref = ρ0 c_a² η`, `e_ref = ½ c_a² η²`.
 //!
-//! \\( P \\) and \\( \partial P/\partial\rho \\) are continuous at \\( x = 1 \\).
+//! `P` and `∂P/∂ρ` are continuous at `x = 1`.
 //!
-//! Differences from the source: paper eq. (6) prints \\( P_{ref} \\) without the square in the denominator;
-//! that would not be the Hugoniot which \\( e_{ref} \\) belongs to.
+//! Differences from the source: paper eq. (6) prints `P_ref` without the square in the denominator;
+//! that would not be the Hugoniot which `e_ref` belongs to.
 //!
 //! # Validity
 //!
-//! Singular where \\( 1 - s_a \eta \to 0 \\), that is at \\( \rho = \rho_0 s_a/(s_a - 1) \\) (3 ρ0 for the
-//! copper of the library) if \\( s_a > 1 \\): see [`MieGruneisen::density_limit`]. The linear Hugoniot itself
-//! is a fit to data, for metals good to particle velocities of a few km/s. \\( \gamma \\) is constant,
-//! \\( \gamma\rho \\) is not; melting and vaporization are absent, so strongly expanded hot states
-//! (\\( x \gtrsim 1.1 \\)) are only qualitative; with the copper of the library at e = 0, \\( c_b^2 \\) turns
-//! negative below \\( \rho \approx \rho_0/3 \\).
+//! Singular where `1 - s_a η → 0`, that is at `ρ = ρ0 s_a/(s_a - 1)` (3 ρ0 for the
+//! copper of the library) if `s_a > 1`: see [`MieGruneisen::density_limit`]. The linear Hugoniot itself
+//! is a fit to data, for metals good to particle velocities of a few km/s. `γ` is constant,
+//! `γρ` is not; melting and vaporization are absent, so strongly expanded hot states
+//! (`x ≳ 1.1`) are only qualitative; with the copper of the library at e = 0, `c_b²` turns
+//! negative below `ρ ≈ ρ0/3`.
 //!
 //! # Source
 //!
@@ -32,15 +34,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MieGruneisen {
-    /// Intercept \\( c_a \\) of the linear shock Hugoniot, the bulk sound speed at rest [m/s].
+    /// Intercept `c_a` of the linear shock Hugoniot, the bulk sound speed at rest [m/s].
     pub bulk_sound_speed: f64,
-    /// Slope \\( s_a \\) of the linear shock Hugoniot [1].
+    /// Slope `s_a` of the linear shock Hugoniot [1].
     pub hugoniot_slope: f64,
-    /// Grüneisen coefficient \\( \gamma \\) [1].
+    /// Grüneisen coefficient `γ` [1].
     pub gruneisen_coefficient: f64,
 }
 
-/// Reference curve at one density: pressure, energy and their derivatives by \\( \eta \\).
+/// Reference curve at one density: pressure, energy and their derivatives by `η`.
 struct Reference {
     pressure: f64,
     energy: f64,
@@ -59,7 +61,7 @@ impl MieGruneisen {
             + self.gruneisen_coefficient * rho * (e - 0.5 * u_p * u_p)
     }
 
-    /// \\( 1/(1 - s_a\eta) \\) in compression, 1 in expansion.
+    /// `1/(1 - s_aη)` in compression, 1 in expansion.
     #[inline]
     fn inverse_denominator(&self, eta: f64) -> f64 {
         1.0 / (1.0 - self.hugoniot_slope * eta.max(0.0))
@@ -100,7 +102,7 @@ impl MieGruneisen {
         rho0 * self.bulk_sound_speed * self.bulk_sound_speed
     }
 
-    /// Density [kg/m³] at which \\( 1 - s_a (1 - x) \\) vanishes; infinite for \\( s_a \le 1 \\).
+    /// Density [kg/m³] at which `1 - s_a (1 - x)` vanishes; infinite for `s_a ≤ 1`.
     pub fn density_limit(&self, rho0: f64) -> f64 {
         let s = self.hugoniot_slope;
         if s > 1.0 { rho0 * s / (s - 1.0) } else { f64::INFINITY }

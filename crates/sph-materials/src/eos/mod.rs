@@ -1,13 +1,13 @@
-//! Equations of state \\( P(\rho, e) \\) of a solid: one model a file, behind one closed enum.
+//! Equations of state `P(ρ, e)` of a solid: one model a file, behind one closed enum.
 //!
 //! Every model here is linear in the specific internal energy at fixed density,
-//! \\( P(\rho, e) = P(\rho, 0) + a(\rho)\, e \\), with \\( a = \partial P / \partial e|_\rho \\); the shock
+//! `P(ρ, e) = P(ρ, 0) + a(ρ) e`, with `a = ∂P / ∂e|_ρ`; the shock
 //! solutions of [`crate::hugoniot`] rest on that.
 //!
 //! Two sound speeds belong to each model:
 //!
-//! * thermodynamic, exact: \\( c_b^2 = \partial P/\partial\rho|_e + (P/\rho^2)\, \partial P/\partial e|_\rho \\);
-//! * quasi-acoustic: \\( c_b^2 = B/\rho \\) with the constant \\( B \\) of the undisturbed material (Rublev &
+//! * thermodynamic, exact: `c_b² = ∂P/∂ρ|_e + (P/ρ²) ∂P/∂e|_ρ`;
+//! * quasi-acoustic: `c_b² = B/ρ` with the constant `B` of the undisturbed material (Rublev &
 //!   Murzov, arXiv 2410.14646, text below paper eq. (8)).
 //!
 //! The square of the thermodynamic speed may become negative: in strong expansion, where the model leaves the
@@ -72,7 +72,7 @@ impl EquationOfState {
         each_model!(self, model => model.pressure(rho0, rho, e))
     }
 
-    /// \\( \partial P/\partial e|_\rho \\) [kg/m³]: a function of density alone in every model here.
+    /// `∂P/∂e|_ρ` [kg/m³]: a function of density alone in every model here.
     #[inline]
     pub fn pressure_energy_slope(&self, rho: f64) -> f64 {
         each_model!(self, model => model.pressure_energy_slope(rho))
@@ -84,13 +84,13 @@ impl EquationOfState {
         each_model!(self, model => model.thermodynamic_sound_speed_squared(rho0, rho, e))
     }
 
-    /// Square of the quasi-acoustic bulk sound speed [m²/s²], \\( B/\rho \\).
+    /// Square of the quasi-acoustic bulk sound speed [m²/s²], `B/ρ`.
     #[inline]
     pub fn quasi_acoustic_sound_speed_squared(&self, rho0: f64, rho: f64) -> f64 {
         self.reference_bulk_modulus(rho0) / rho
     }
 
-    /// Bulk modulus \\( B \\) of the reference state [Pa], \\( \rho_0 c^2 \\) at \\( \rho_0 \\), e = 0.
+    /// Bulk modulus `B` of the reference state [Pa], `ρ0 c²` at `ρ0`, e = 0.
     #[inline]
     pub fn reference_bulk_modulus(&self, rho0: f64) -> f64 {
         each_model!(self, model => model.reference_bulk_modulus(rho0))

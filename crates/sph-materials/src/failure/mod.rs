@@ -8,13 +8,13 @@
 //! | model | what it is | module |
 //! |---|---|---|
 //! | [`Failure::None`] | unlimited tension | |
-//! | [`Failure::TensileCutoff`] | fails at once where the mean tension passes \\( T \\), heals when compressed | below |
-//! | [`Failure::VoidGrowth`] | voids grow at a rate above \\( T \\), soften the point and tear it | [`void_growth`] |
+//! | [`Failure::TensileCutoff`] | fails at once where the mean tension passes `T`, heals when compressed | below |
+//! | [`Failure::VoidGrowth`] | voids grow at a rate above `T`, soften the point and tear it | [`void_growth`] |
 //!
 //! # The cut-off
 //!
-//! A point whose mean tension \\( -P \\) passes \\( T \\) fails. A failed point carries no tension and no shear
-//! (\\( P = 0 \\) in expansion, \\( S = 0 \\)) until it is compressed again, \\( P > 0 \\), which heals it with a zero
+//! A point whose mean tension `-P` passes `T` fails. A failed point carries no tension and no shear
+//! (`P = 0` in expansion, `S = 0`) until it is compressed again, `P > 0`, which heals it with a zero
 //! deviator to start from.
 //!
 //! ```text
@@ -29,7 +29,7 @@
 //! # Validity of the cut-off
 //!
 //! No rate, no energy of new surface, no dependence on the size of the point. It is what the source's tensile strength
-//! \\( T \\) without a rule suggests, and the default.
+//! `T` without a rule suggests, and the default.
 
 pub mod void_growth;
 
@@ -45,7 +45,7 @@ pub enum Failure {
     None,
     /// Fails where the mean tension passes the tensile strength.
     TensileCutoff {
-        /// Tensile strength \\( T \\), a limit of \\( -P \\) [Pa].
+        /// Tensile strength `T`, a limit of `-P` [Pa].
         tensile_strength: f64,
     },
     /// Voids grow where the mean tension passes the tensile strength, until they meet.
@@ -108,7 +108,7 @@ impl Failure {
         }
     }
 
-    /// Tensile strength \\( T \\) [Pa]; infinite where there is no limit.
+    /// Tensile strength `T` [Pa]; infinite where there is no limit.
     #[inline]
     pub fn tensile_strength(&self) -> f64 {
         match *self {

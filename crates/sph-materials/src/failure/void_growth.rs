@@ -1,9 +1,9 @@
 //! Growth of voids in tension, and their recompression.
 //!
-//! Each point is taken for a hollow sphere of distension \\( \alpha = V/V_s \\) (volume over volume of the solid) whose
-//! matrix is perfectly plastic and viscous, \\( \eta \\). Voids of distension \\( \alpha_0 \\) are there from the
+//! Each point is taken for a hollow sphere of distension `α = V/V_s` (volume over volume of the solid) whose
+//! matrix is perfectly plastic and viscous, `η`. Voids of distension `α0` are there from the
 //! beginning; density and equation of state are those of the material *with* them, so that the matrix has the density
-//! \\( \rho a \\) and the point the pressure
+//! `ρ a` and the point the pressure
 //!
 //! ```text
 //! P = P_s(ρ a, e)/a           a = α/α0: the distension that growth has added
@@ -17,17 +17,17 @@
 //! T(α)  = T ln(α/(α - 1)) / ln(α0/(α0 - 1))
 //! ```
 //!
-//! T(α0) = T is the tensile strength at slow loading; the sphere's own theory has \\( T(\alpha) = \tfrac23 Y
-//! \ln(\alpha/(\alpha-1)) \\), of which only the shape is kept, since the strength of a real metal is set by what is in
-//! it. The factor \\( 3/(4\eta)\,\alpha(\alpha-1) \\) is the exact one for incompressible radial flow: the power
-//! \\( -P \dot V \\) equals \\( \int 2\eta\, d{:}d \\) over the matrix. Softening: the yield strength falls to
-//! \\( Y (1 - \varphi/\varphi_c) \\), \\( \varphi = 1 - 1/\alpha \\).
+//! T(α0) = T is the tensile strength at slow loading; the sphere's own theory has `T(α) = 2/3 Y
+//! ln(α/(α-1))`, of which only the shape is kept, since the strength of a real metal is set by what is in
+//! it. The factor `3/(4η) α(α-1)` is the exact one for incompressible radial flow: the power
+//! `-P dV/dt` equals `∫ 2η d:d` over the matrix. Softening: the yield strength falls to
+//! `Y (1 - φ/φ_c)`, `φ = 1 - 1/α`.
 //!
-//! At \\( \varphi = \varphi_c \\) the voids meet and the point is torn: from then on it carries pressure, and shear while
-//! it is under pressure, but never tension again. The gap must be closed, \\( \rho \\) back at its value without tension,
+//! At `φ = φ_c` the voids meet and the point is torn: from then on it carries pressure, and shear while
+//! it is under pressure, but never tension again. The gap must be closed, `ρ` back at its value without tension,
 //! before there is pressure.
 //!
-//! A step is implicit in \\( \alpha \\) (bisection), so a stiff matrix needs no shorter step.
+//! A step is implicit in `α` (bisection), so a stiff matrix needs no shorter step.
 //!
 //! # Validity
 //!
@@ -49,19 +49,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VoidGrowth {
-    /// Mean tension \\( T \\) at which the first voids begin to grow [Pa].
+    /// Mean tension `T` at which the first voids begin to grow [Pa].
     pub tensile_strength: f64,
-    /// Distension \\( \alpha_0 \\) of the voids that are there from the beginning, above 1 [-].
+    /// Distension `α0` of the voids that are there from the beginning, above 1 [-].
     pub initial_distension: f64,
-    /// Viscosity \\( \eta \\) of the matrix [Pa s].
+    /// Viscosity `η` of the matrix [Pa s].
     pub viscosity: f64,
-    /// Porosity \\( \varphi_c \\) at which voids meet, 0 to 1 [-].
+    /// Porosity `φ_c` at which voids meet, 0 to 1 [-].
     pub coalescence_porosity: f64,
 }
 
 impl VoidGrowth {
-    /// Growth in a metal of tensile strength `tensile_strength` [Pa]: \\( \alpha_0 = 1.0003 \\), \\( \eta = 10 \\) Pa s,
-    /// the orders of magnitude of Johnson's copper, and \\( \varphi_c = 0.3 \\).
+    /// Growth in a metal of tensile strength `tensile_strength` [Pa]: `α0 = 1.0003`, `η = 10` Pa s,
+    /// the orders of magnitude of Johnson's copper, and `φ_c = 0.3`.
     pub fn of_strength(tensile_strength: f64) -> Self {
         Self { tensile_strength, initial_distension: 1.0003, viscosity: 10.0, coalescence_porosity: 0.3 }
     }

@@ -7,26 +7,26 @@
 //!
 //! # Equations
 //!
-//! Uniaxial strain, Hooke's law in logarithmic strain: \\( S_{xx} = -\tfrac43 G \ln(\rho/\rho_0) \\) until
-//! \\( |S_{xx}| = \tfrac23 Y \\) at \\( \rho_{ec} = \rho_0 e^{Y/2G} \\) (paper eqs. (30), (31)), constant
+//! Uniaxial strain, Hooke's law in logarithmic strain: `S_xx = -4/3 G ln(ρ/ρ0)` until
+//! `|S_xx| = 2/3 Y` at `ρ_ec = ρ0 e^(Y/2G)` (paper eqs. (30), (31)), constant
 //! after. Every wave obeys the jump conditions of [`crate::jump`]. Precursor:
-//! \\( D_{ec} = V_0 \sqrt{\Sigma_{ec}/(V_0 - V_{ec})} \\). The plastic wave starts from the precursor's state,
+//! `D_ec = V0 √(Σ_ec/(V0 - V_ec))`. The plastic wave starts from the precursor's state,
 //! not from rest.
 //!
-//! Differences from the source: its closed form of \\( D_{ec} \\) lacks the \\( 1/\rho_0 \\) under the root.
+//! Differences from the source: its closed form of `D_ec` lacks the `1/ρ0` under the root.
 //!
 //! # When which structure stands
 //!
-//! \\( u_p \le u_{ec} \\): one elastic wave. Above, as long as the plastic wave is slower than \\( D_{ec} \\):
+//! `u_p ≤ u_ec`: one elastic wave. Above, as long as the plastic wave is slower than `D_ec`:
 //! two waves. When it would be as fast or faster: one overdriven shock from rest straight to the yielded state.
 //! At the threshold both descriptions give the same state, since the three points lie on one Rayleigh line.
 //!
 //! # Validity
 //!
 //! Shocks as discontinuities, heat conduction and rate effects left out; elastic and plastic branch each convex
-//! in \\( V \\), which holds for constant G and every equation of state here in compression. The thermodynamic
-//! limit of the Mie-Grüneisen model with strength is \\( \rho/\rho_0 < 1 + 2/\gamma \\) (without strength the
-//! singular point is removable, and [`principal`] goes on to \\( s_a/(s_a - 1) \\)).
+//! in `V`, which holds for constant G and every equation of state here in compression. The thermodynamic
+//! limit of the Mie-Grüneisen model with strength is `ρ/ρ0 < 1 + 2/γ` (without strength the
+//! singular point is removable, and [`principal`] goes on to `s_a/(s_a - 1)`).
 
 mod principal;
 
@@ -82,12 +82,12 @@ impl PistonWaves {
     }
 }
 
-/// Deviatoric stress \\( -S_{xx} = \tfrac23 Y \\) [Pa] of uniaxial compression at yield.
+/// Deviatoric stress `-S_xx = 2/3 Y` [Pa] of uniaxial compression at yield.
 fn yielded_shear_stress(material: &Material) -> f64 {
     2.0 / 3.0 * material.strength.yield_strength()
 }
 
-/// \\( -S_{xx} \\) [Pa] of elastic uniaxial compression to a density [kg/m³].
+/// `-S_xx` [Pa] of elastic uniaxial compression to a density [kg/m³].
 fn elastic_shear_stress(material: &Material, density: f64) -> f64 {
     4.0 / 3.0 * material.strength.shear_modulus() * (density / material.reference_density).ln()
 }

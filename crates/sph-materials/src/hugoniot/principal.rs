@@ -1,14 +1,14 @@
 //! Principal Hugoniot: one shock from rest into a strengthless solid, in closed form.
 //!
-//! With \\( r = \rho/\rho_0 \\):
+//! With `r = ρ/ρ0`:
 //!
-//! | equation of state | \\( u_s(u_p) \\) |
+//! | equation of state | `u_s(u_p)` |
 //! |---|---|
-//! | Mie-Grüneisen | \\( c_a + s_a u_p \\), by construction |
-//! | linear | \\( \tfrac12 u_p + \sqrt{\tfrac14 u_p^2 + c_0^2} \\), from \\( u_s^2 = c_0^2 r \\) |
-//! | linear-Γ | \\( w + \sqrt{w^2 + c_0^2} \\), \\( w = \tfrac14 (\Gamma + 1) u_p \\), from \\( u_s^2 = c_0^2 r/(1 - \tfrac12(\Gamma - 1)(r - 1)) \\) |
-//! | ideal gas | \\( \tfrac12 (\gamma + 1) u_p \\): the strong shock, since it starts from rest at e = 0 |
-//! | logarithmic | \\( r u_p/(r - 1) \\) with \\( u_p^2 = (B/\rho_0) \ln r\, (1 - 1/r) \\), one root |
+//! | Mie-Grüneisen | `c_a + s_a u_p`, by construction |
+//! | linear | `½ u_p + √(¼ u_p² + c0²)`, from `u_s² = c0² r` |
+//! | linear-Γ | `w + √(w² + c0²)`, `w = ¼ (Γ + 1) u_p`, from `u_s² = c0² r/(1 - ½(Γ - 1)(r - 1))` |
+//! | ideal gas | `½ (γ + 1) u_p`: the strong shock, since it starts from rest at e = 0 |
+//! | logarithmic | `r u_p/(r - 1)` with `u_p² = (B/ρ0) ln r (1 - 1/r)`, one root |
 
 use super::check_piston;
 use crate::eos::{EquationOfState, Logarithmic};
@@ -50,7 +50,7 @@ fn shock_velocity(eos: &EquationOfState, rho0: f64, u_p: f64) -> f64 {
     }
 }
 
-/// With \\( L = \ln r \\): \\( L (1 - e^{-L}) = \rho_0 u_p^2/B \\), \\( u_s = u_p/(1 - e^{-L}) \\).
+/// With `L = ln r`: `L (1 - e^(-L)) = ρ0 u_p²/B`, `u_s = u_p/(1 - e^(-L))`.
 fn logarithmic_shock_velocity(model: &Logarithmic, rho0: f64, u_p: f64) -> f64 {
     let mach_squared = rho0 * u_p * u_p / model.bulk_modulus;
     let compression = |log_ratio: f64| -(-log_ratio).exp_m1();

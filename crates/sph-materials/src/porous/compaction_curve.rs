@@ -1,15 +1,17 @@
-//! A compaction curve \\( \alpha(P) \\), turned into u_s(u_p) by the jump conditions.
+//! A compaction curve `α(P)`, turned into u_s(u_p) by the jump conditions.
 //!
 //! Two forms: a [`CrushCurve`], and the one that was measured on pressed copper powder,
 //!
-//! \\[ \alpha(P) = 1 + (\alpha_1 - 1)\, e^{-a (P - P_1)}, \qquad \alpha = \rho_s/\rho \\]
+//! ```text
+//! α(P) = 1 + (α1 - 1) e^(-a (P - P1)),      α = ρ_s/ρ
+//! ```
 //!
-//! with \\( P \\) the longitudinal stress behind the wave, \\( \rho_s \\) the density of the solid at that
-//! stress and energy, and \\( \alpha_1 \\) the distension behind the precursor of stress \\( P_1 \\) and speed
-//! \\( D_1 \\): \\( u_1 = P_1/(\rho_{00} D_1) \\), \\( \rho_1 = \rho_{00} D_1/(D_1 - u_1) \\),
-//! \\( e_1 = \tfrac12 u_1^2 \\). For the main wave \\( e = e_1 + \tfrac12 (P + P_1)(V_1 - V) \\) with
-//! \\( V = \alpha/\rho_s \\), and \\( P(\rho_s, e) = P \\) of the solid's own equation of state (strengthless)
-//! closes the set; then \\( u_s - u_1 = V_1 \sqrt{(P - P_1)/(V_1 - V)} \\).
+//! with `P` the longitudinal stress behind the wave, `ρ_s` the density of the solid at that
+//! stress and energy, and `α1` the distension behind the precursor of stress `P1` and speed
+//! `D1`: `u1 = P1/(ρ00 D1)`, `ρ1 = ρ00 D1/(D1 - u1)`,
+//! `e1 = ½ u1²`. For the main wave `e = e1 + ½ (P + P1)(V1 - V)` with
+//! `V = α/ρ_s`, and `P(ρ_s, e) = P` of the solid's own equation of state (strengthless)
+//! closes the set; then `u_s - u1 = V1 √((P - P1)/(V1 - V))`.
 //!
 //! Velocities are relative to the undisturbed medium, as they are measured; behind a standing precursor, to the
 //! matter at rest there.
@@ -110,13 +112,13 @@ impl CompactionCurve {
         Ok(Self { medium, precursor, form, greatest_stress })
     }
 
-    /// Distension \\( \alpha_1 \\) behind the precursor [1].
+    /// Distension `α1` behind the precursor [1].
     pub fn precursor_distension(&self) -> f64 {
         let ahead = &self.precursor;
         self.medium.solid_density(ahead.pressure, |_| ahead.specific_internal_energy) / ahead.density
     }
 
-    /// Distension \\( \alpha \\) behind the main wave at a stress [Pa] within the data [1].
+    /// Distension `α` behind the main wave at a stress [Pa] within the data [1].
     pub fn distension(&self, stress: f64) -> f64 {
         match self.form {
             Form::Crush(curve) => curve.distension(stress),

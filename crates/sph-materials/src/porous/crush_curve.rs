@@ -1,10 +1,12 @@
-//! A crush curve \\( \alpha(P) \\): how a porous medium is compacted by pressure.
+//! A crush curve `α(P)`: how a porous medium is compacted by pressure.
 //!
-//! \\[ \alpha(P) = 1 + (\alpha_0 - 1) \left( \frac{P_s - P}{P_s - P_e} \right)^n \quad (P_e < P < P_s), \qquad
-//!    \alpha = \alpha_0 \; (P \le P_e), \qquad \alpha = 1 \; (P \ge P_s) \\]
+//! ```text
+//! α(P) = 1 + (α0 - 1) ( (P_s - P)/(P_s - P_e) )ⁿ      (P_e < P < P_s),
+//! α = α0  (P ≤ P_e),      α = 1  (P ≥ P_s)
+//! ```
 //!
-//! \\( \alpha = \rho_s/\rho \\) with the density \\( \rho_s \\) of the solid at the same pressure and energy. n = 2 is
-//! the quadratic form that hydrocodes take; the elastic change of \\( \alpha \\) below \\( P_e \\) is left out, as in
+//! `α = ρ_s/ρ` with the density `ρ_s` of the solid at the same pressure and energy. n = 2 is
+//! the quadratic form that hydrocodes take; the elastic change of `α` below `P_e` is left out, as in
 //! the source.
 //!
 //! # Source
@@ -18,11 +20,11 @@ use crate::error::HugoniotError;
 /// A crush curve.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct CrushCurve {
-    /// \\( P_e \\): pressure at which compaction begins [Pa].
+    /// `P_e`: pressure at which compaction begins [Pa].
     pub elastic_pressure: f64,
-    /// \\( P_s \\): pressure from which on the medium is solid [Pa].
+    /// `P_s`: pressure from which on the medium is solid [Pa].
     pub solid_pressure: f64,
-    /// \\( \alpha_0 \\): distension of the undisturbed medium [1].
+    /// `α0`: distension of the undisturbed medium [1].
     pub initial_distension: f64,
     /// n; 2 in the source [1].
     pub exponent: f64,
@@ -67,7 +69,7 @@ impl CrushCurve {
         Err(HugoniotError::BadNumber { field: "elastic_pressure", value, unit: "Pa", least: f64::MIN })
     }
 
-    /// \\( \alpha \\) at a pressure [Pa] of first loading [1].
+    /// `α` at a pressure [Pa] of first loading [1].
     pub fn distension(&self, pressure: f64) -> f64 {
         let left = (self.solid_pressure - pressure) / (self.solid_pressure - self.elastic_pressure);
         1.0 + (self.initial_distension - 1.0) * left.clamp(0.0, 1.0).powf(self.exponent)

@@ -2,24 +2,26 @@
 //!
 //! * [`PorousMedium::shut_pores`]: the medium compacts wholly, to its own solid's equation of state;
 //! * [`PorousMedium::snow_plow`]: the same with an incompressible solid;
-//! * [`CompactionCurve`]: partial compaction along a curve \\( \alpha(P) \\), measured or a [`CrushCurve`].
+//! * [`CompactionCurve`]: partial compaction along a curve `α(P)`, measured or a [`CrushCurve`].
 //!
 //! # Shut pores
 //!
-//! A medium of density \\( \rho_{00} = \rho_0/m \\) carries a precursor stress \\( \sigma_{HEL} \\). The
-//! compaction wave leaves solid of density \\( \rho \\), velocity \\( u_p \\) and stress
-//! \\( \Sigma = -\sigma_{xx} \\):
+//! A medium of density `ρ00 = ρ0/m` carries a precursor stress `σ_HEL`. The
+//! compaction wave leaves solid of density `ρ`, velocity `u_p` and stress
+//! `Σ = -σ_xx`:
 //!
-//! \\[ \rho_{00} u_s = \rho (u_s - u_p), \quad \Sigma = \sigma_{HEL} + \rho_{00} u_s u_p, \quad
-//!    e = \tfrac12 (\sigma_{HEL} + \Sigma)(V_{00} - V), \quad P(\rho, e) = \Sigma - s. \\]
+//! ```text
+//! ρ00 u_s = ρ (u_s - u_p),      Σ = σ_HEL + ρ00 u_s u_p,
+//! e = ½ (σ_HEL + Σ)(V00 - V),      P(ρ, e) = Σ - s
+//! ```
 //!
-//! Four equations for \\( u_s, \rho, \Sigma, e \\), except for \\( s = -S_{xx} \\), which they leave open:
+//! Four equations for `u_s, ρ, Σ, e`, except for `s = -S_xx`, which they leave open:
 //! behind a shut front the solid was worked through in all directions, and its mean deviator is anything from
 //! zero to that of uniaxial compression at yield. These are the two ends of
 //! [`PorousMedium::shock_velocity_range`]:
 //!
-//! * lower end, [`ShearBehind::None`]: \\( s = 0 \\);
-//! * upper end, [`ShearBehind::Yielded`]: \\( s = \tfrac23 Y \\).
+//! * lower end, [`ShearBehind::None`]: `s = 0`;
+//! * upper end, [`ShearBehind::Yielded`]: `s = 2/3 Y`.
 //!
 //! For the copper of the library, m = 1.3514 (that of a cell of 20 × 20 particles less 104) and a standing
 //! precursor of 0.20 GPa:
@@ -37,20 +39,20 @@
 //!
 //! # Which state lies ahead
 //!
-//! [`Precursor::Standing`] puts the stress ahead of the wave at rest and at \\( \rho_{00} \\): the source's
+//! [`Precursor::Standing`] puts the stress ahead of the wave at rest and at `ρ00`: the source's
 //! assumption ("the density change in the elastic precursor is small"), and the frame of a window whose inlet
 //! imposes one velocity. u_s and u_p are then relative to the matter behind the precursor.
-//! [`Precursor::Moving`] adds the precursor's own velocity \\( \sigma_{HEL}/(\rho_{00} D) \\) (13 m/s for 0.22
+//! [`Precursor::Moving`] adds the precursor's own velocity `σ_HEL/(ρ00 D)` (13 m/s for 0.22
 //! GPa at 2.6 km/s) and density; velocities are then relative to the undisturbed medium, and at the same u_p
 //! the wave is slower by 20 to 30 m/s. [`Jump::shock_velocity`] and [`Jump::velocity_jump`] of such a wave
 //! compare with the former.
 //!
 //! # Validity
 //!
-//! The conditions hold once the pores are shut, for the source's copper from \\( u_p \approx 150 \\) m/s on;
+//! The conditions hold once the pores are shut, for the source's copper from `u_p ≈ 150` m/s on;
 //! nothing here can tell that they are. With open pores the medium behind is lighter, and by mass conservation
 //! u_s lies above the range: it must then be measured or computed. Compaction is normal (stress rises with
-//! density) for \\( m < 1 + 2/\gamma \\); beyond that the heat of compaction wins, and it is an error.
+//! density) for `m < 1 + 2/γ`; beyond that the heat of compaction wins, and it is an error.
 //!
 //! # Source
 //!
@@ -78,12 +80,12 @@ pub enum Precursor {
     None,
     /// Stressed matter at rest and at the medium's own density.
     Standing {
-        /// \\( \sigma_{HEL} \\), positive in compression [Pa].
+        /// `σ_HEL`, positive in compression [Pa].
         stress: f64,
     },
     /// A precursor wave with its own jump conditions.
     Moving {
-        /// \\( \sigma_{HEL} \\), positive in compression [Pa].
+        /// `σ_HEL`, positive in compression [Pa].
         stress: f64,
         /// Speed of the precursor in the undisturbed medium [m/s].
         speed: f64,
@@ -95,7 +97,7 @@ pub enum Precursor {
 pub enum ShearBehind {
     /// None: mean pressure and longitudinal stress agree.
     None,
-    /// That of uniaxial compression at yield, \\( -S_{xx} = \tfrac23 Y \\).
+    /// That of uniaxial compression at yield, `-S_xx = 2/3 Y`.
     Yielded,
 }
 
@@ -117,7 +119,7 @@ pub struct PorousMedium {
 }
 
 impl PorousMedium {
-    /// A medium of initial density \\( \rho_{00} \\) [kg/m³].
+    /// A medium of initial density `ρ00` [kg/m³].
     ///
     /// # Errors
     ///
@@ -137,7 +139,7 @@ impl PorousMedium {
         Ok(medium)
     }
 
-    /// A medium of porosity \\( m = \rho_0/\rho_{00} > 1 \\).
+    /// A medium of porosity `m = ρ0/ρ00 > 1`.
     ///
     /// # Errors
     ///
@@ -150,18 +152,18 @@ impl PorousMedium {
         Self::new(solid, solid.reference_density / porosity, precursor)
     }
 
-    /// Density \\( \rho_{00} \\) of the undisturbed medium [kg/m³].
+    /// Density `ρ00` of the undisturbed medium [kg/m³].
     pub fn initial_density(&self) -> f64 {
         self.initial_density
     }
 
-    /// Porosity \\( m = \rho_0/\rho_{00} \\) [1].
+    /// Porosity `m = ρ0/ρ00` [1].
     pub fn porosity(&self) -> f64 {
         self.solid.reference_density / self.initial_density
     }
 
-    /// Porosity from which on compaction is anomalous, \\( 1 + 2\rho_0/a(\rho_0) \\), for Mie-Grüneisen
-    /// \\( 1 + 2/\gamma \\) [1].
+    /// Porosity from which on compaction is anomalous, `1 + 2ρ0/a(ρ0)`, for Mie-Grüneisen
+    /// `1 + 2/γ` [1].
     pub fn porosity_limit(&self) -> f64 {
         let rho0 = self.solid.reference_density;
         1.0 + 2.0 * rho0 / self.solid.equation_of_state.pressure_energy_slope(rho0)
@@ -235,10 +237,10 @@ impl PorousMedium {
         Ok(ShockVelocityRange { lower: end(ShearBehind::None)?, upper: end(ShearBehind::Yielded)? })
     }
 
-    /// The compaction wave of an incompressible solid (snow-plow): \\( u_s = u_p\, m/(m - 1) \\) if nothing
+    /// The compaction wave of an incompressible solid (snow-plow): `u_s = u_p m/(m - 1)` if nothing
     /// runs ahead.
     ///
-    /// u_s lies above that of the compressible solid as long as the latter is denser than \\( \rho_0 \\) behind
+    /// u_s lies above that of the compressible solid as long as the latter is denser than `ρ0` behind
     /// the wave. The stored energy is that of the jump condition; the equation of state is not asked, and
     /// `pressure` is the longitudinal stress.
     ///
@@ -264,7 +266,7 @@ impl PorousMedium {
         self.slower_than_precursor(Jump { ahead, behind, wave_speed })
     }
 
-    /// Distension \\( \alpha = \rho_s/\rho \\) of matter of a stress [Pa] and density [kg/m³] behind the compaction
+    /// Distension `α = ρ_s/ρ` of matter of a stress [Pa] and density [kg/m³] behind the compaction
     /// wave: the solid at that stress, strengthless, and at the energy that the jump conditions give.
     pub fn distension_behind(&self, stress: f64, density: f64) -> f64 {
         let ahead = self.state_ahead();

@@ -1,6 +1,6 @@
 //! Slope limiters for the reconstruction to the contact.
 //!
-//! A particle sees a neighbour's value differ by d = Φ_j - Φ_i and its own gradient promise g = ∇Φ_i·r_ji. A limiter
+//! A particle sees a neighbor's value differ by d = Φ_j - Φ_i and its own gradient promise g = ∇Φ_i·r_ji. A limiter
 //! returns **half** the limited difference, which is what reconstruction adds:
 //!
 //! ```text
@@ -8,7 +8,17 @@
 //! ```
 //!
 //! The printed limiter compares d with the central g and is not TVD: it overshoots (2.619 for 2.500 in a sound pulse).
-//! The others compare d with the upwind difference u = 2 g - d.
+//! The others compare d with the upwind difference u = 2 g - d. The limited differences are, with minmod(a, b, …) the
+//! argument of least magnitude where all have one sign, else zero:
+//!
+//! | limiter | limited difference | source |
+//! |---|---|---|
+//! | [`MinmodPrinted`] | minmod(d, g) | Rublev & Murzov, arXiv 2410.14646, eqs. (14), (15) |
+//! | [`MinmodTvd`] | minmod(d, u) | P. L. Roe, Annu. Rev. Fluid Mech. 18 (1986) 337 |
+//! | [`VanLeer`] | 2 d u/(d + u) where d u > 0, else 0 | B. van Leer, J. Comput. Phys. 14 (1974) 361 |
+//! | [`MonotonizedCentral`] | minmod(g, 2 d, 2 u) | B. van Leer, J. Comput. Phys. 23 (1977) 276 |
+//!
+//! Valid for any pair of numbers, zeros and equal ones included.
 //!
 //! **A new limiter** is a type with [`SlopeLimiter`], one variant of [`Limiter`] and one arm of `with_limiter!`.
 
@@ -172,7 +182,7 @@ mod tests {
 
     #[test]
     fn upwind_limiters_stay_between_the_values() {
-        // Φ_l must lie between Φ_i and Φ_j, and not pass the upwind neighbour mirrored: 0 ≤ half ≤ d and half ≤ 2 g - d.
+        // Φ_l must lie between Φ_i and Φ_j, and not pass the upwind neighbor mirrored: 0 ≤ half ≤ d and half ≤ 2 g - d.
         for limiter in [Limiter::MinmodTvd, Limiter::VanLeer, Limiter::MonotonizedCentral] {
             for k in -40..=40 {
                 let g = 0.1 * k as f64;

@@ -1,4 +1,4 @@
-//! Time-centring at free surfaces: the half step of the velocity follows the true acceleration.
+//! Time-centering at free surfaces: the half step of the velocity follows the true acceleration.
 //!
 //! The half step of U uses a difference gradient of σ, which is zero in a film two particles thick while the true
 //! acceleration is not: a mode that would grow by sqrt(1 + (ωτ)²/2) a step. Once the forces are known,
@@ -31,7 +31,7 @@ pub(super) struct CenteringTile<'a, 'b, D: SolidDimension> {
     pub buffer: &'a mut [Line],
 }
 
-/// Where the sums of the contact pass stand before time-centring, and what it reads of particles.
+/// Where the sums of the contact pass stand before time-centering, and what it reads of particles.
 pub struct Deltas<'a, D: SolidDimension> {
     /// The lists.
     pub lists: &'a NeighborLists<D>,
@@ -39,7 +39,7 @@ pub struct Deltas<'a, D: SolidDimension> {
     pub pairs: &'a [TilePairs],
     /// Velocity at the start of the step [m/s].
     pub velocity: &'a D::AxisColumns,
-    /// Mass [kg], per metre of depth in the plane.
+    /// Mass [kg], per meter of depth in the plane.
     pub mass: &'a [f64],
     /// Half the time step [s].
     pub half_step: f64,

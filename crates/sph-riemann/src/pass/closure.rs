@@ -136,7 +136,7 @@ impl<D: SolidDimension> LaneKernel for ClosureTile<'_, '_, D> {
     }
 }
 
-/// Eight particles and their neighbours.
+/// Eight particles and their neighbors.
 struct Block<'a, 'b, D: SolidDimension> {
     pass: &'a Pass<'b, D>,
     own: &'a [u32; LANES],
@@ -144,7 +144,7 @@ struct Block<'a, 'b, D: SolidDimension> {
 }
 
 impl<D: SolidDimension> Block<'_, '_, D> {
-    /// w, and the vector to the neighbour, of eight pairs.
+    /// w, and the vector to the neighbor, of eight pairs.
     #[inline(always)]
     fn weight<L: Lanes>(
         &self,

@@ -17,14 +17,14 @@ use crate::dimension::SolidDimension;
 pub struct TilePairs {
     /// Sums for foreign particles, in the order of the lists; empty if there are none.
     foreign: Vec<Line>,
-    /// For each slot that lists pairs once: true if time-centring needs its forces.
+    /// For each slot that lists pairs once: true if time-centering needs its forces.
     pub(super) marked: Vec<bool>,
     /// Forces of the marked slots [N], one line an axis.
     pub(super) forces: Vec<Line>,
 }
 
 impl TilePairs {
-    /// True if time-centring has pairs to do in this tile.
+    /// True if time-centering has pairs to do in this tile.
     pub fn has_marked(&self) -> bool {
         !self.forces.is_empty()
     }

@@ -38,9 +38,9 @@ const LARGEST_RELAXATION: f64 = 1e-3;
 /// What imposed velocities put into the particles in a step, tile by tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ConstraintInput {
-    /// Momentum [kg m/s], per metre of depth in the plane.
+    /// Momentum [kg m/s], per meter of depth in the plane.
     pub impulse: [f64; 3],
-    /// Total energy [J], per metre of depth in the plane.
+    /// Total energy [J], per meter of depth in the plane.
     pub work: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct TileReport {
     pub input: ConstraintInput,
     /// First particle with a state that cannot be.
     pub broken: Option<u32>,
-    /// Work of the volume consistency: ∫ P dV of the density it changes [J], per metre of depth in the plane.
+    /// Work of the volume consistency: ∫ P dV of the density it changes [J], per meter of depth in the plane.
     pub relaxation_work: f64,
     /// Bounds that acted.
     pub interventions: Interventions,

@@ -4,8 +4,10 @@
 //! Plane strain along the third axis: the plate modulus E/(1 - ν²) stands for E. A strip of length L and thickness h:
 //! I/A = h²/12, Ω = ω L² sqrt(ρ A/(E' I)), r² = I/(A L²), s² = E' I/(κ G A L²), κ = 5/6. Both ends free:
 //!
-//! $$ 2 - 2 \cosh(\Omega\alpha)\cos(\Omega\beta) + \frac{\Omega}{\sqrt{1 - \Omega^2 r^2 s^2}}
-//!    \left[\Omega^2 r^2 (r^2 - s^2)^2 + 3 r^2 - s^2\right] \sinh(\Omega\alpha)\sin(\Omega\beta) = 0 $$
+//! ```text
+//! 2 - 2 cosh(Ωα) cos(Ωβ)
+//!     + Ω/√(1 - Ω² r² s²) [Ω² r² (r² - s²)² + 3 r² - s²] sinh(Ωα) sin(Ωβ) = 0
+//! ```
 //!
 //! with α, β = sqrt(½(∓(r² + s²) + sqrt((r² - s²)² + 4/Ω²))). For r, s → 0: cosh k cos k = 1, k = 4.7300, Ω = k².
 //!

@@ -2,8 +2,10 @@
 //!
 //! With A = 2/((γ+1)ρ), B = (γ-1)/(γ+1) P of the side ahead, the velocity that a wave to the pressure p gives:
 //!
-//! $$ f(p) = (p - P)\sqrt{A/(p + B)} \; (p > P), \qquad
-//!    f(p) = \tfrac{2c}{\gamma-1}\left[(p/P)^{(\gamma-1)/2\gamma} - 1\right] \; (p \le P), $$
+//! ```text
+//! f(p) = (p - P) √[A/(p + B)]                           (p > P: shock)
+//! f(p) = 2c/(γ - 1) [(p/P)^((γ - 1)/(2γ)) - 1]          (p ≤ P: fan)
+//! ```
 //!
 //! and p of the contact from f_l(p) + f_r(p) + u_r - u_l = 0, by bisection. Fans are isentropic and self-similar.
 //!

@@ -3,8 +3,10 @@
 //! Nodes carry r and u, zones carry ρ, e and the deviator (S_rr, S_θθ, S_zz). One step of the scheme, leapfrog in its
 //! synchronous form:
 //!
-//! $$ u^{n+1/2} = u^n + \tfrac12 \tau f^n / m, \quad r^{n+1} = r^n + \tau u^{n+1/2}, \quad
-//!    u^{n+1} = u^{n+1/2} + \tfrac12 \tau f^{n+1} / m. $$
+//! ```text
+//! u^(n+1/2) = u^n + ½ τ f^n/m,      r^(n+1) = r^n + τ u^(n+1/2),
+//! u^(n+1)   = u^(n+1/2) + ½ τ f^(n+1)/m
+//! ```
 //!
 //! The strain rates of a zone of volume A (per unit depth, per unit depth and radian, per steradian) at the half step
 //! are D_rr = Δu/Δr and k D_θθ = d ln A/dt - D_rr, with k = 0, 1, 2 hoop directions in the plane, around an axis and

@@ -3,7 +3,9 @@
 //! The solid has the logarithmic equation of state P = B ln(ρ/ρ0), a constant shear modulus G and von Mises yield at
 //! |S_xx| = 2Y/3. With V = 1/ρ both branches are straight lines in ln V:
 //!
-//! $$ d\sigma = (B + 4G/3)\\, d\ln V \text{ (elastic)}, \qquad d\sigma = B\\, d\ln V \text{ (plastic)}. $$
+//! ```text
+//! dσ = (B + 4G/3) d ln V  (elastic),      dσ = B d ln V  (plastic)
+//! ```
 //!
 //! A side of the contact carries an elastic wave and, when it reaches the yield surface, a slower plastic wave. On a
 //! branch of modulus K the sound speed is c = sqrt(K V). Compression is a jump, Δu² = Δσ ΔV (paper eqs. (28), (29));
@@ -233,6 +235,10 @@ pub struct Solution {
 }
 
 /// Solves the Riemann problem of two states of one solid.
+///
+/// # Errors
+/// Numbers that make no solid or state; no contact stress at which both sides move alike; waves of one side that would
+/// overtake each other. The message names the condition.
 pub fn solve(solid: Solid, left: State, right: State, release: Release) -> Result<Solution, RiemannError> {
     solid.check()?;
     let curves =

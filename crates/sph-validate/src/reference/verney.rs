@@ -3,9 +3,10 @@
 //! A shell of an incompressible, rigid, perfectly plastic material moves inwards with u = -U0 R0/r. Its kinetic energy
 //! is spent in plastic work when the inner radius has come to r'0:
 //!
-//! $$ U_0 = \sqrt{\frac{2 Y F(\alpha, \lambda)}{\sqrt3 \rho \ln(R_1/R_0)}}, \quad
-//!    F = \int_\lambda^1 x \ln\left(1 + \frac{2\alpha + \alpha^2}{x^2}\right) dx, \quad
-//!    \alpha = \frac{R_1 - R_0}{R_0}, \quad \lambda = \frac{r_0'}{R_0}. $$
+//! ```text
+//! U0 = √[2 Y F(α, λ) / (√3 ρ ln(R1/R0))],      F = ∫_λ^1 x ln(1 + (2α + α²)/x²) dx,
+//! α = (R1 - R0)/R0,      λ = r0'/R0
+//! ```
 //!
 //! Real material is elastic and compressible: it stops 0.3 % further in (see [`super::lagrangian`]).
 //!

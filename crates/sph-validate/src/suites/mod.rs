@@ -95,6 +95,9 @@ pub trait Suite: Sync {
     fn work(&self, case: &Case) -> f64;
 
     /// One run.
+    ///
+    /// # Errors
+    /// If the reference does not exist, the run fails or is interrupted.
     fn run(&self, case: &Case, watch: Watch<'_>) -> Result<Outcome, ValidateError>;
 
     /// What its answers depend on besides the code; a kept run of other parameters is computed again.
@@ -103,6 +106,9 @@ pub trait Suite: Sync {
     }
 
     /// The pictures of its outcomes, which are in the order of [`Self::cases`] and at least one.
+    ///
+    /// # Errors
+    /// If the reference that is drawn beside the outcomes does not exist.
     fn pictures(&self, outcomes: &[&Outcome]) -> Result<Vec<Picture>, ValidateError> {
         Ok(plots::convergences(&self.about(), outcomes))
     }

@@ -61,11 +61,17 @@ pub struct Setup {
 
 impl Setup {
     /// The two waves ahead of the piston.
+    ///
+    /// # Errors
+    /// A material and velocity without plane waves: see [`sph_materials::hugoniot::piston`].
     pub fn waves(&self) -> Result<Staircase, ValidateError> {
         Ok(Staircase::new(&self.material, self.velocity)?)
     }
 
     /// Way of the fastest wave [m] through the solid until the end.
+    ///
+    /// # Errors
+    /// As [`Setup::waves`].
     pub fn reach(&self) -> Result<f64, ValidateError> {
         Ok(self.waves()?.waves().first().map_or(0.0, |wave| wave.wave_speed) * self.duration)
     }

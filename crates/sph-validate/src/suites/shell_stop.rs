@@ -37,6 +37,9 @@ pub struct Times {
 
 impl Setup {
     /// The published shell.
+    ///
+    /// # Errors
+    /// If the library of materials does not have the shell's aluminum.
     pub fn published() -> Result<Self, ValidateError> {
         let material = material("aluminium-verney")?;
         Ok(Self { material, inner_radius: 0.08, outer_radius: 0.1, velocity: 208.55 })

@@ -176,7 +176,7 @@ fn pull_back(history: &[(f64, f64)]) -> f64 {
 /// Plane waves in two plates of one fluid with u_s = c + s u, in Lagrangian coordinates.
 ///
 /// Both shocks run with U = c + s u, u half of the velocity of impact. The releases from the free surfaces are fans
-/// centred where the shocks arrive. With the isentrope taken for the Hugoniot, P = ρ0 (c + s u) u, a characteristic of
+/// centered where the shocks arrive. With the isentrope taken for the Hugoniot, P = ρ0 (c + s u) u, a characteristic of
 /// pressure P runs with C(P) = c + 2 s u(P) (to the second order in u/c), and where one of each fan meet the pressure is
 /// P_1 + P_2 - P_0.
 struct WaveDiagram {

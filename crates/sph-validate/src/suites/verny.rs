@@ -284,7 +284,7 @@ fn stop_radius_plot(outcomes: &[&Outcome], setup: &Setup, exact: &Stop) -> Figur
     };
     let (low, high) = (by_square.min(formula), by_square.max(formula));
     let near = Axis::new("r'_0 [mm]").with_range(low - setup.inner_radius, high + 0.6 * setup.inner_radius);
-    // Rounded: a tick is labelled with all digits of its number.
+    // Rounded: a tick is labeled with all digits of its number.
     let mut ticks: Vec<f64> = outcomes.iter().map(|outcome| (1e3 * size(outcome)).round() / 1e3).collect();
     ticks.sort_by(f64::total_cmp);
     ticks.dedup();

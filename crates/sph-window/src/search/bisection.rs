@@ -2,15 +2,17 @@
 //!
 //! The place of the front is measured by the number N of particles in the box,
 //!
-//! \\[ \omega = \frac{N - N_0}{\nu N_0} \\]
+//! ```text
+//! ω = (N - N0)/(ν N0)
+//! ```
 //!
-//! with \\( N_0 \\) particles at the start and \\( \nu \\) such that \\( \omega = 1 \\) when the front is at its wanted
-//! place. It grows when the front moves ahead, so that the mean slope \\( \langle d\omega/dt \rangle \\) falls as
-//! \\( u_{out} \\) rises, and is zero where the front stands.
+//! with `N0` particles at the start and `ν` such that `ω = 1` when the front is at its wanted
+//! place. It grows when the front moves ahead, so that the mean slope `⟨dω/dt⟩` falls as
+//! `u_out` rises, and is zero where the front stands.
 //!
-//! 1. The front runs to its place, \\( \omega = 1 \\); that state is saved.
-//! 2. Bisection: each trial starts from the saved state with the middle of the bracket as its \\( u_{out} \\), runs until
-//!    `samples` periods of the medium are fed, and fits the slope of \\( \omega(t) \\). It ends when the bracket is
+//! 1. The front runs to its place, `ω = 1`; that state is saved.
+//! 2. Bisection: each trial starts from the saved state with the middle of the bracket as its `u_out`, runs until
+//!    `samples` periods of the medium are fed, and fits the slope of `ω(t)`. It ends when the bracket is
 //!    narrower than `tolerance`.
 //! 3. With the result the window runs until `settle` lengths of the box are fed; that state is saved.
 //! 4. Bisection once more, from there. The frame that it finds stays.
@@ -39,9 +41,9 @@ const AWAY: f64 = 0.75;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Bisection {
-    /// Bounds of \\( u_{out} \\) [m/s]; by default those about the speed of the front on its way.
+    /// Bounds of `u_out` [m/s]; by default those about the speed of the front on its way.
     pub bracket: Option<(f64, f64)>,
-    /// Half the width of a bracket that is not given, as a part of \\( u_s \\) [-].
+    /// Half the width of a bracket that is not given, as a part of `u_s` [-].
     pub half_width: f64,
     /// Periods of the medium that are fed in a trial [-].
     pub samples: f64,
@@ -133,17 +135,17 @@ pub struct Trial {
     pub stage: Stage,
     /// Time of the state that it started from [s].
     pub start: f64,
-    /// \\( u_{out} \\) [m/s].
+    /// `u_out` [m/s].
     pub outlet_velocity: f64,
-    /// \\( u_{in} = u_{out} + u_p \\) [m/s], \\( u_s \\) if the front stands.
+    /// `u_in = u_out + u_p` [m/s], `u_s` if the front stands.
     pub inlet_velocity: f64,
-    /// \\( \langle d\omega/dt \rangle \\) [1/s]; none for the approach.
+    /// `⟨dω/dt⟩` [1/s]; none for the approach.
     pub drift: Option<f64>,
     /// Periods of the medium that were fed.
     pub fed: f64,
     /// Particles advanced in it.
     pub particle_steps: u64,
-    /// Bracket of \\( u_{out} \\) after it [m/s].
+    /// Bracket of `u_out` after it [m/s].
     pub bracket: (f64, f64),
     /// What followed.
     pub decision: Decision,
@@ -197,7 +199,7 @@ pub struct Bisector {
     /// The bracket as it was at the start of the round.
     whole: (f64, f64),
     outlet_velocity: f64,
-    /// \\( N_0 \\), once known, and \\( \nu \\).
+    /// `N0`, once known, and `ν`.
     particles: Option<usize>,
     scale: f64,
     slope: Slope,

@@ -1,14 +1,16 @@
 //! Frame tracking: boost by the measured drift.
 //!
-//! In a frame where the front drifts with \\( v_f = u_s - u_b \\), a boost of everything by \\( -v_f \\) stops it. When
+//! In a frame where the front drifts with `v_f = u_s - u_b`, a boost of everything by `-v_f` stops it. When
 //! the front first reaches the wanted place it is stopped outright. From then on, each time that it has swept an interval
-//! of whole periods of the medium in a time \\( \Delta t \\), the frame is boosted by
+//! of whole periods of the medium in a time `Δt`, the frame is boosted by
 //!
-//! \\[ w = -g\, v_f - p\, (x_f - x_w)/\Delta t \\]
+//! ```text
+//! w = -g v_f - p (x_f - x_w)/Δt
+//! ```
 //!
 //! half of the measured drift (g = 0.5, since the drift over one period is noisy) and a weak pull (p = 0.1) towards the
-//! wanted place \\( x_w \\). The drift and place of one interval map to the next with the matrix \\( (1, 1; -p, 1-g-p) \\),
-//! whose eigenvalues have the modulus \\( \sqrt{1-g} \\) and little turn: it settles without ringing.
+//! wanted place `x_w`. The drift and place of one interval map to the next with the matrix `(1, 1; -p, 1-g-p)`,
+//! whose eigenvalues have the modulus `√(1-g)` and little turn: it settles without ringing.
 //!
 //! This is ours; the published search, [`super::bisection`], is that of Rublev & Murzov, arXiv 2410.14646, section 3.1.
 
@@ -57,7 +59,7 @@ pub struct Target {
     pub front: f64,
     /// Swept length between boosts, whole periods of the medium [m].
     pub interval: f64,
-    /// Velocity \\( u_b \\) with which the medium comes in [m/s].
+    /// Velocity `u_b` with which the medium comes in [m/s].
     pub inlet_velocity: f64,
 }
 

@@ -39,7 +39,7 @@ enum Task {
     /// Look at what a release needs: licenses, packages; with --full a dry run, oldest dependencies, interfaces.
     Health(health::Arguments),
     /// Build rustdoc with warnings denied, check the links of all Markdown files, build the guide.
-    Docs,
+    Docs(docs::Arguments),
 }
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -50,6 +50,6 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Fuzz(arguments) => fuzz::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Health(arguments) => health::run(&arguments),
-        Task::Docs => docs::run(),
+        Task::Docs(arguments) => docs::run(&arguments),
     }
 }

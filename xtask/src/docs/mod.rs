@@ -1,8 +1,8 @@
 //! `cargo xtask docs`: rustdoc with warnings denied, links and commands of all Markdown files, and the guide as a book.
 //!
-//! Nothing is taken from the network: formulas are plain text, links are checked by [`links`], commands by [`commands`]. The book needs
-//! mdbook; without it everything else is done, and the way to get it is told.
+//! Formulas are plain text, links are checked by [`links`], commands by [`commands`]; [`book`] builds the guide.
 
+mod book;
 mod commands;
 mod links;
 
@@ -10,8 +10,16 @@ use std::process::{Command, ExitCode};
 
 use crate::{files, process};
 
+/// What is built.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Leave the book out: mdbook is installed if it is not there, which takes the network
+    #[arg(long)]
+    no_book: bool,
+}
+
 /// Builds and checks all documentation; exit status 1 if something is wrong.
-pub fn run() -> anyhow::Result<ExitCode> {
+pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let root = process::root();
     let rustdoc = process::run(&mut rustdoc())?;
     let (texts, exists) = (files::texts(&root)?, |path: &str| root.join(path).exists());
@@ -20,7 +28,12 @@ pub fn run() -> anyhow::Result<ExitCode> {
         eprintln!("error: {fault}");
     }
     println!("docs: {} broken links, {} commands that are none", broken.len(), untrue.len());
-    let book = book()?;
+    let book = if arguments.no_book {
+        println!("docs: the book was not built, as asked");
+        ExitCode::SUCCESS
+    } else {
+        book::build()?
+    };
     let good =
         rustdoc == ExitCode::SUCCESS && broken.is_empty() && untrue.is_empty() && book == ExitCode::SUCCESS;
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -33,16 +46,4 @@ fn rustdoc() -> Command {
     command.args(["doc", "--workspace", "--no-deps", "--manifest-path"]);
     command.arg(process::root().join("Cargo.toml"));
     command
-}
-
-/// Builds the guide into `target/book`, if mdbook is there.
-fn book() -> anyhow::Result<ExitCode> {
-    let found = Command::new("mdbook").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !found {
-        println!(
-            "docs: mdbook is not installed, the guide stays Markdown; hint: cargo install mdbook --locked"
-        );
-        return Ok(ExitCode::SUCCESS);
-    }
-    process::run(Command::new("mdbook").arg("build").arg(process::root().join("docs")))
 }

@@ -195,6 +195,14 @@ mod tests {
     }
 
     #[test]
+    fn the_printed_limiter_passes_the_upwind_bound() {
+        // d = 1, g = 0.6: the neighbor on the other side is only 2 g - d = 0.2 away, and half must not be more.
+        let (difference, gradient) = (1.0, 0.6);
+        assert_eq!(Limiter::MinmodPrinted.half(difference, gradient), 0.3);
+        assert!(Limiter::MinmodTvd.half(difference, gradient) <= 0.1 + 1e-15);
+    }
+
+    #[test]
     fn both_sides_at_once_are_the_same_limiter() {
         let values = [-2.0e9, -1.0, -1e-3, 1e-100, 0.5, 1.0, 3.0e9];
         for (d, l, r) in

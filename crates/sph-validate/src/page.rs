@@ -37,12 +37,10 @@ pub fn page(report: &Report, ended: &[Ended<'_>]) -> Result<Page, ValidateError>
 /// The verdict over everything, in a sentence.
 fn answer(report: &Report) -> (Verdict, String) {
     let failed = report.runs.iter().filter(|run| run.failure.is_some()).count();
-    let (gates, missed) = (report.n_gates(), report.failures().count());
-    let words = format!("{} of {gates} gates passed in {} runs", gates - missed, report.runs.len());
-    match (failed, missed) {
-        (0, 0) if gates == 0 => (Verdict::Unknown, format!("{words}: nothing is judged here")),
-        (0, 0) => (Verdict::Good, words),
-        (0, _) => (Verdict::Bad, words),
+    let words = format!("{} in {} runs", report.tally(), report.runs.len());
+    match (failed, verdict(report.rows.iter())) {
+        (0, Verdict::Unknown) => (Verdict::Unknown, format!("{words}: nothing is judged here")),
+        (0, verdict) => (verdict, words),
         _ => (Verdict::Bad, format!("{words}; {failed} runs failed")),
     }
 }
@@ -65,11 +63,13 @@ fn facts(report: &Report) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Verdict of some rows: good if all gates passed, unknown without gates.
+/// Verdict of some rows: good if all gates passed, to be looked at if the misses are known ones, unknown without gates.
 fn verdict<'r>(rows: impl Iterator<Item = &'r Row>) -> Verdict {
-    Verdict::worst(
-        rows.filter_map(|row| row.passed).map(|passed| if passed { Verdict::Good } else { Verdict::Bad }),
-    )
+    Verdict::worst(rows.filter_map(|row| match (row.passed?, &row.known_miss) {
+        (true, _) => Some(Verdict::Good),
+        (false, Some(_)) => Some(Verdict::Caution),
+        (false, None) => Some(Verdict::Bad),
+    }))
 }
 
 fn rows_of<'r>(report: &'r Report, suite: &'r SuiteRecord) -> impl Iterator<Item = &'r Row> {
@@ -94,9 +94,15 @@ fn overview(report: &Report) -> Section {
     let verdicts: Vec<Verdict> = suites.iter().map(|suite| verdict(rows_of(report, suite))).collect();
     let view = TableView::from(&table).with_links("problem", anchors).with_verdicts("gates passed", verdicts);
     let mut section = Section::new("Overview").with_table(view);
-    let missed: Vec<String> = report.failures().map(missed_line).collect();
+    let missed: Vec<String> = report.unexplained().map(missed_line).collect();
     if !missed.is_empty() {
         section = section.with_text("Gates that were missed:").with_list(missed);
+    }
+    let known: Vec<String> = report.failures().filter_map(known_line).collect();
+    if !known.is_empty() {
+        section = section
+            .with_text("Gates whose misses are known; they were not moved, and a miss may not grow:")
+            .with_list(known);
     }
     let failed: Vec<String> = report.runs.iter().filter_map(|run| run.failure.clone()).collect();
     if !failed.is_empty() {
@@ -113,6 +119,11 @@ fn missed_line(row: &Row) -> String {
     let scheme = row.scheme.title();
     let unit = if row.unit == "-" { String::new() } else { format!(" {}", row.unit) };
     format!("{}: {variant}{scheme}, {n}: {} = {value:.4}{unit}; {gate}", row.suite, row.metric)
+}
+
+/// A known miss with its cause.
+fn known_line(row: &Row) -> Option<String> {
+    Some(format!("{}: {}", missed_line(row), row.known_miss.as_ref()?))
 }
 
 fn suite_section(

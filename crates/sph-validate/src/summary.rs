@@ -10,9 +10,8 @@ use crate::report::{Report, Row, SuiteRecord};
 /// The whole document. Plots are taken to lie beside it.
 pub fn summary(report: &Report, pictures: &[Written]) -> String {
     let mut text = String::from("# Validation\n\n");
-    let n_failed = report.failures().count();
     let _ = writeln!(text, "Made by `{}` ({} tier).", report.provenance.command, report.tier.as_str());
-    let _ = writeln!(text, "{} of {} gates passed.\n", report.n_gates() - n_failed, report.n_gates());
+    let _ = writeln!(text, "{}.\n", report.tally());
     text.push_str(concat!(
         "A figure in bold missed its gate: it must not be farther from the reference than the published figure of ",
         "the same run (half a unit of its last printed digit allowed), nor than what this program has reached before ",
@@ -57,6 +56,21 @@ fn push_suite(text: &mut String, report: &Report, suite: &SuiteRecord) {
         }
     }
     text.push('\n');
+    push_known(text, &rows);
+}
+
+/// The known misses of a suite, one line a cause.
+fn push_known(text: &mut String, rows: &[&Row]) {
+    let mut causes: Vec<&str> = Vec::new();
+    for cause in rows.iter().filter_map(|row| row.known_miss.as_deref()) {
+        if !causes.contains(&cause) {
+            causes.push(cause);
+        }
+    }
+    if !causes.is_empty() {
+        let lines: Vec<String> = causes.iter().map(|cause| format!("- {cause}\n")).collect();
+        let _ = writeln!(text, "Known misses:\n\n{}", lines.concat());
+    }
 }
 
 /// One line of a suite's table: a figure of a variant and scheme over the resolutions.

@@ -210,12 +210,13 @@ impl<D: SolidDimension> Window<D> {
         let observation = Observation { time, front, swept: self.feed.fed_length() + front };
         self.check_front(&observation)?;
         self.progress.history.observe(time, observation.swept);
-        self.progress.observation = Some(observation);
+        let last = self.progress.observation.replace(observation);
         if self.is_settled()
             && let Some((from, to)) = self.plateau()
         {
+            let duration = last.map_or(0.0, |last| time - last.time);
             let (inlet_velocity, density) = (self.inlet_velocity(), self.feed.sample().mean_density());
-            self.progress.balance.observe(&profile.between(from, to), inlet_velocity, density);
+            self.progress.balance.observe(&profile.between(from, to), inlet_velocity, density, duration);
         }
         Ok(observation)
     }

@@ -12,10 +12,11 @@ use crate::metric::Measurement;
 use crate::outcome::{Cost, Curve, Field, Outcome};
 use crate::watch::Watch;
 
-/// Means over the looks at the front of the second half of a run.
+/// Means over time of the second half of a run, from the looks at the front; each stands for the time since the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Averages {
-    looks: f64,
+    /// Time that the means are over [s].
+    duration: f64,
     /// σ_xx of the plateau behind the front [Pa].
     pub stress: f64,
     /// Density of the packing there, mass over area [kg/m³].
@@ -27,13 +28,13 @@ pub struct Averages {
 }
 
 impl Averages {
-    fn look(&mut self, window: &Window<Dim2>) {
+    fn look(&mut self, window: &Window<Dim2>, since_last: f64) {
         let (Some(behind), Some(ahead)) = (window.plateau(), window.ahead()) else { return };
         let profile = window.profile();
         let plateau = profile.between(behind.0, behind.1);
-        let weight = 1.0 / (self.looks + 1.0);
+        self.duration += since_last;
+        let weight = since_last / self.duration;
         let mean = |old: f64, new: f64| old + weight * (new - old);
-        self.looks += 1.0;
         self.stress = mean(self.stress, plateau.stress());
         self.packing_density = mean(self.packing_density, plateau.packing_density());
         self.own_density = mean(self.own_density, plateau.own_density());
@@ -59,19 +60,22 @@ pub fn advance(
     length: f64,
 ) -> Result<Averages, ValidateError> {
     let mut means = Averages::default();
+    let mut last = 0.0;
     while window.fed_length() < length {
         watch.check()?;
         let report = window
             .step()
             .map_err(|source| ValidateError::Window { case: case.to_string(), source: Box::new(source) })?;
-        if report.observation.is_some() {
+        if let Some(look) = report.observation {
+            let since_last = look.time - last;
+            last = look.time;
             watch.tell((window.fed_length() / length).clamp(0.0, 1.0));
             if window.fed_length() > 0.5 * length && window.is_settled() {
-                means.look(window);
+                means.look(window, since_last);
             }
         }
     }
-    if means.looks == 0.0 {
+    if means.duration == 0.0 {
         let reason = "the front has not settled in the second half of what was fed".into();
         return Err(ValidateError::NotReached { case: case.to_string(), reason });
     }

@@ -90,6 +90,21 @@ fn a_legend_without_a_free_place_stands_beside_the_panel() {
     assert_eq!(std::fs::read(crowded).unwrap(), std::fs::read(outside).unwrap());
 }
 
+/// A curve along the top, a slope at the bottom right: the bottom left is free.
+#[test]
+fn a_legend_hides_no_slope() {
+    let folder = tempfile::tempdir().unwrap();
+    let (chosen, left) = (folder.path().join("a.svg"), folder.path().join("b.svg"));
+    let axes = (Axis::log("N").with_range(10.0, 100.0), Axis::log("error").with_range(0.01, 1.0));
+    let slope = Annotation::Slope { start: (50.0, 0.03), to_x: 100.0, order: -1.0, text: "order 1".into() };
+    let figure = Figure::new("", axes.0, axes.1)
+        .with(Series::line("errors", &[10.0, 30.0, 100.0], &[0.9, 0.8, 0.85]))
+        .with_annotation(slope);
+    figure.write_svg(&chosen).unwrap();
+    figure.with_legend(LegendPosition::BottomLeft).write_svg(&left).unwrap();
+    assert_eq!(std::fs::read(chosen).unwrap(), std::fs::read(left).unwrap());
+}
+
 #[test]
 fn a_legend_too_wide_for_its_side_stands_below_the_axis() {
     let folder = tempfile::tempdir().unwrap();

@@ -177,10 +177,41 @@ fn draw_vertical(canvas: &mut Canvas, plan: &PanelPlan<'_>, x: f64, words: &str)
 fn draw_slope(canvas: &mut Canvas, plan: &PanelPlan<'_>, start: (f64, f64), end: (f64, f64), words: &str) {
     let (Some(from), Some(to)) = (plan.place(start.0, start.1), plan.place(end.0, end.1)) else { return };
     canvas.line(from, to, NOTE_STROKE);
-    let (place, anchor) = if to.0 > plan.area.right - text::width(words, NOTE_SIZE) - 10.0 {
+    let (place, anchor) = slope_words(plan, to, words);
+    draw_note(canvas, Some(place), words, anchor);
+}
+
+/// Where the words of a slope stand: behind its end, below it where there is no room behind.
+fn slope_words(plan: &PanelPlan<'_>, to: (f64, f64), words: &str) -> ((f64, f64), Anchor) {
+    if to.0 > plan.area.right - text::width(words, NOTE_SIZE) - 10.0 {
         ((to.0 - 4.0, to.1 + NOTE_SIZE + 4.0), Anchor::End)
     } else {
         ((to.0 + 7.0, to.1 + 0.36 * NOTE_SIZE), Anchor::Start)
+    }
+}
+
+/// Lines on the canvas that slopes and notes take up: a legend must hide none of them.
+pub(super) fn annotated(plan: &PanelPlan<'_>) -> Vec<[(f64, f64); 2]> {
+    let words = |(x, y): (f64, f64), anchor: Anchor, text: &str| {
+        let (width, middle) = (text::width(text, NOTE_SIZE), y - 0.36 * NOTE_SIZE);
+        let left = if anchor == Anchor::End { x - width } else { x };
+        [(left, middle), (left + width, middle)]
     };
-    draw_note(canvas, Some(place), words, anchor);
+    let mut lines = Vec::new();
+    for annotation in &plan.panel.annotations {
+        match annotation {
+            Annotation::Text { x, y, text } => {
+                lines.extend(plan.place(*x, *y).map(|place| words(place, Anchor::Start, text)));
+            }
+            Annotation::Slope { start, to_x, order, text } => {
+                let end = plan.place(*to_x, start.1 * (to_x / start.0).powf(*order));
+                let Some((from, to)) = plan.place(start.0, start.1).zip(end) else { continue };
+                let (place, anchor) = slope_words(plan, to, text);
+                lines.extend([[from, to], words(place, anchor, text)]);
+            }
+            // They cross the panel; no place would be left.
+            Annotation::Horizontal { .. } | Annotation::Vertical { .. } => {}
+        }
+    }
+    lines
 }

@@ -81,9 +81,12 @@ fn free_place(panel: &PanelPlan<'_>, size: (f64, f64)) -> LegendPlace {
     found.map_or(LegendPlace::Outside, |&(left, above)| LegendPlace::Inside(left, above))
 }
 
-/// Places on the canvas where something of the data is drawn.
+/// Places on the canvas where something of the data, a slope or a note is drawn.
 fn samples(panel: &PanelPlan<'_>) -> Vec<(f64, f64)> {
     let mut out = Vec::new();
+    for [from, to] in data::annotated(panel) {
+        between(from, to, panel.area, &mut out);
+    }
     for series in &panel.panel.series {
         for piece in data::pieces(panel, series) {
             let is_line = !matches!(series.style, super::Style::Points);

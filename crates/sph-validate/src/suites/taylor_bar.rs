@@ -118,7 +118,7 @@ impl Suite for TaylorBar {
         let grid = |problem: &Problem| {
             let resolutions: &[u32] = match (tier, problem.variant) {
                 (Tier::Quick, "copper-plane") => &[4],
-                (Tier::Quick, _) => &[2],
+                (Tier::Quick, _) => &[2, 4],
                 (Tier::Full, "copper-plane") => &[4, 8, 16],
                 (Tier::Full, _) => &[2, 4, 6],
             };

@@ -23,7 +23,7 @@ use crate::error::LibraryError;
 use crate::material::Material;
 
 /// Name and text of every entry.
-const TEXTS: [(&str, &str); 4] = [
+const TEXTS: &[(&str, &str)] = &[
     ("porous-copper", include_str!("porous-copper.ron")),
     ("aluminium-riemann", include_str!("aluminium-riemann.ron")),
     ("copper-sound-wave", include_str!("copper-sound-wave.ron")),

@@ -1,13 +1,12 @@
 //! The stages of a step, and the arrays that they hand on to each other.
 
-use rayon::prelude::*;
 use sph_core::lanes::{LANES, Line};
 use sph_core::neighbors::cell_grid::sort_particles;
-use sph_core::neighbors::{DisplacementRange, NeighborLists, Reach, TILE};
+use sph_core::neighbors::{DisplacementRange, NeighborLists, Reach};
 
 use crate::dimension::SolidDimension;
 use crate::error::StepError;
-use crate::pass::{Deltas, Pass, Sizes, Smoothing, TilePairs, collect};
+use crate::pass::{Deltas, Pass, Sizes, Smoothing, TilePairs};
 use crate::record::Row;
 use crate::scheme::{FaceClosure, SurfaceTreatment};
 use crate::simulation::{Simulation, StepReport};
@@ -26,7 +25,7 @@ pub(crate) struct Scratch {
     /// What pairs add up to.
     pub(crate) sums: Vec<Line>,
     /// What the pairs of each tile leave behind.
-    pairs: Vec<TilePairs>,
+    pub(crate) pairs: Vec<TilePairs>,
     /// Sizes of the particles that records show, if they are not all the same.
     size: Vec<f64>,
     uniform_size: Option<f64>,
@@ -174,8 +173,8 @@ impl<D: SolidDimension> Simulation<D> {
         (self.scratch.sums, self.scratch.pairs, self.scratch.faces) = (sums, pairs, faces);
     }
 
-    /// Brings the sums of all tiles together; the half step of the velocity follows the true acceleration near free
-    /// surfaces.
+    /// The half step of the velocity follows the true acceleration near free surfaces. Where there are none, sums stay as
+    /// they are.
     pub(crate) fn center_in_time(&mut self, time_step: f64) {
         let s = &mut self.scratch;
         let deltas = Deltas {
@@ -191,14 +190,13 @@ impl<D: SolidDimension> Simulation<D> {
         let mut sums = std::mem::take(&mut s.sums);
         let mut pairs = std::mem::take(&mut s.pairs);
         self.pass(&self.scratch.sides, self.settings.surface, 0.0).centering(&mut sums, &mut pairs);
-        let tiles = sums.par_chunks_mut(TILE * D::SUM_LINES).enumerate();
-        tiles.for_each(|(t, own)| collect(&self.lists, &pairs, t, own));
         (self.scratch.sums, self.scratch.pairs) = (sums, pairs);
     }
 
     pub(crate) fn update(&mut self, time_step: f64) -> TileReport {
         let s = &mut self.scratch;
-        let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &s.sums };
+        let (lists, pairs) = (&self.lists, s.pairs.as_slice());
+        let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &mut s.sums, lists, pairs };
         let how = (time_step, self.instructions);
         update(&mut self.particles, &self.matter, &self.settings, outcome, how, &mut s.reports);
         let mut sum = TileReport::default();

@@ -138,19 +138,6 @@ impl Lanes for Avx512 {
         // SAFETY: the invariant of this module.
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }
     }
-    #[inline(always)]
-    fn prefetch(lines: &[Line], stride: usize, indices: &[u32; LANES]) {
-        for &i in indices {
-            let at = i as usize * stride;
-            debug_assert!(at + stride <= lines.len());
-            for line in 0..stride {
-                // SAFETY: a prefetch never faults.
-                unsafe {
-                    _mm_prefetch::<_MM_HINT_T0>(lines.as_ptr().wrapping_add(at + line).cast());
-                }
-            }
-        }
-    }
 }
 
 #[inline(always)]

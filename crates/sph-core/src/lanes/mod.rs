@@ -17,6 +17,7 @@ mod avx2;
 mod avx512;
 mod exp;
 mod plain;
+mod prefetch;
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -27,6 +28,7 @@ use avx2::Avx2;
 use avx512::Avx512;
 pub use exp::exp;
 use plain::Plain;
+pub use prefetch::prefetch;
 
 /// Number of lanes, and the number of particles in a block.
 pub const LANES: usize = 8;
@@ -168,9 +170,6 @@ pub trait Lanes: Real {
         self.store(&mut array);
         array
     }
-    /// Asks for the lines of eight records ahead of their use.
-    #[inline(always)]
-    fn prefetch(_lines: &[Line], _stride: usize, _indices: &[u32; LANES]) {}
 }
 
 impl Real for f64 {

@@ -4,9 +4,16 @@
 //! the particles in the arrays that pair loops read; it is refreshed from its owner at one call. This is also where
 //! particles of neighboring processes would enter.
 
+use rayon::prelude::*;
+
 use crate::dimension::Dimension;
 use crate::domain::Domain;
-use crate::lanes::Line;
+use crate::lanes::{Line, prefetch};
+
+/// Copies that one thread refreshes in one go.
+const PART: usize = 1024;
+/// Copies by which an owner is asked for before it is read.
+const AHEAD: usize = 16;
 
 /// Copies of particles, with the shift of each.
 #[derive(Clone, Debug, Default)]
@@ -70,14 +77,20 @@ impl<D: Dimension> Halo<D> {
     /// their positions, which are the first numbers of a record.
     pub fn refresh(&self, lines: &mut [Line], stride: usize, first: usize) {
         let (owned, copies) = lines.split_at_mut(first * stride);
-        for ((owner, shift), copy) in self.owner.iter().zip(&self.shift).zip(copies.chunks_exact_mut(stride))
-        {
-            let at = *owner as usize * stride;
-            copy.copy_from_slice(&owned[at..at + stride]);
-            for a in 0..D::COUNT {
-                copy[0].0[a] += shift[a];
+        let parts = copies.par_chunks_mut(stride * PART).enumerate();
+        parts.for_each(|(part, copies)| {
+            for (k, copy) in copies.chunks_exact_mut(stride).enumerate() {
+                let k = part * PART + k;
+                if let Some(owner) = self.owner.get(k + AHEAD) {
+                    prefetch(owned, *owner as usize * stride, stride);
+                }
+                let at = self.owner[k] as usize * stride;
+                copy.copy_from_slice(&owned[at..at + stride]);
+                for a in 0..D::COUNT {
+                    copy[0].0[a] += self.shift[k][a];
+                }
             }
-        }
+        });
     }
 
     /// Positions of the particles and then of the copies, along one axis [m].

@@ -6,7 +6,7 @@
 //! slot the list says where in the buffer the sums of the eight neighbours stand. The second part lists the pairs that the
 //! other particle owns: both parts together are the full list.
 
-use crate::lanes::LANES;
+use crate::lanes::{LANES, prefetch};
 use crate::neighbors::TILE;
 
 /// Marks of particles that have no place in the buffer yet: none needed, and one needed.
@@ -141,6 +141,17 @@ impl TileLists {
     pub fn pairs(&self, block: usize) -> (&[[u32; LANES]], &[[u16; LANES]]) {
         let targets = &self.targets[self.once[block] as usize..self.once[block + 1] as usize];
         (&self.block(block)[..targets.len()], targets)
+    }
+
+    /// Asks for a part of the lists ahead of their use: part `part` of `parts`.
+    #[inline(always)]
+    pub fn prefetch(&self, part: usize, parts: usize) {
+        fn share<T>(column: &[T], part: usize, parts: usize) {
+            let (first, end) = (column.len() * part / parts, column.len() * (part + 1) / parts);
+            prefetch(column, first, end - first);
+        }
+        share(&self.slots, part, parts);
+        share(&self.targets, part, parts);
     }
 
     /// Number of slots that list pairs once.

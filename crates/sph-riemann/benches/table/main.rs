@@ -6,7 +6,9 @@
 //! the fused multiply-add limit (a multiply-add counts two); `memory` is its bytes read and written once a step over the
 //! bandwidth. The best of some runs of thirty steps counts, rebuilds of the lists included.
 //!
-//! `--quick`: fewer cases and runs. `--cases RUNS CASE...`: these cases, that many runs each. `--count CASE STEPS`: nothing but these steps of a case, for a counter of instructions.
+//! `--quick`: fewer cases and runs. `--cases RUNS CASE...`: these cases, that many runs each. `--least STEPS CASE...`: the
+//! least time of each stage in that many single steps, in nanoseconds a particle, which says something on a busy machine
+//! too. `--count CASE STEPS`: nothing but these steps of a case, for a counter of instructions.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -156,13 +158,53 @@ fn main() {
         ["--cases", runs, ref names @ ..] => {
             table(true, runs.parse().expect("a number of runs"), &|case| names.contains(&case.name))
         }
+        ["--least", steps, ref names @ ..] => least(steps.parse().expect("a number of steps"), names),
         ["--quick"] => table(true, 3, &|case| case.quick),
         [] => table(false, 5, &|_| true),
         _ => {
-            eprintln!("table: options are --quick, --cases RUNS CASE..., or --count CASE STEPS");
+            eprintln!(
+                "table: options are --quick, --cases RUNS CASE..., --least STEPS CASE..., or --count CASE STEPS"
+            );
             std::process::exit(2);
         }
     }
+}
+
+/// The least time of each stage in some single steps, rebuilds apart, and of a step between rebuilds.
+fn least(steps: u64, names: &[&str]) {
+    println!(
+        "case, particles, threads; {}; a step [ns a particle]",
+        StepStage::ALL.map(StepStage::name).join(", ")
+    );
+    for case in CASES.iter().filter(|case| names.contains(&case.name)) {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(case.threads).build().expect("threads");
+        let (particles, stages, whole) = pool.install(|| match case.dimensions {
+            2 => least_of::<Dim2>(case, steps),
+            _ => least_of::<Dim3>(case, steps),
+        });
+        print!("{:<22} {particles:>7} {:>2} ", case.name, case.threads);
+        stages.iter().for_each(|stage| print!(" {stage:>6.1}"));
+        println!("  {whole:>6.1}");
+    }
+}
+
+fn least_of<D: SolidDimension>(case: &Case, steps: u64) -> (usize, [f64; 7], f64) {
+    let mut simulation = lattice::<D>(case.cells, case.porous, case.settings());
+    let particles = simulation.particles().len();
+    let (mut stages, mut whole) = ([f64::INFINITY; 7], f64::INFINITY);
+    for _ in 0..steps {
+        let (before, start) = (*simulation.stage_times(), Instant::now());
+        let rebuilt = simulation.step().expect("a sound step").rebuilt;
+        let seconds = start.elapsed().as_secs_f64();
+        let spent = simulation.stage_times().since(&before);
+        for (least, &stage) in stages.iter_mut().zip(&StepStage::ALL) {
+            // Lists and volumes take no time where nothing is rebuilt.
+            let now = 1e9 * spent.seconds(stage) / particles as f64;
+            *least = if now > 0.0 { least.min(now) } else { *least };
+        }
+        whole = if rebuilt { whole } else { whole.min(1e9 * seconds / particles as f64) };
+    }
+    (particles, stages, whole)
 }
 
 /// Nothing but steps: a counter of instructions sees little else when it subtracts two runs.

@@ -14,9 +14,10 @@
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, prefetch};
 use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
+use super::ahead::Ahead;
 use super::gradient::CENTERING_EIGENVALUE;
 use super::sums::{TilePairs, add_to_buffer, collect};
 use super::{Pass, load_line, own_indices};
@@ -29,6 +30,8 @@ pub(super) struct CenteringTile<'a, 'b, D: SolidDimension> {
     pub index: usize,
     pub pairs: &'a TilePairs,
     pub buffer: &'a mut [Line],
+    /// Where the sums of the tile's particles go afterwards: asked for ahead.
+    pub sums: &'a [Line],
 }
 
 /// Where the sums of the contact pass stand before time-centering, and what it reads of particles.
@@ -46,10 +49,12 @@ pub struct Deltas<'a, D: SolidDimension> {
 }
 
 impl<D: SolidDimension> Deltas<'_, D> {
-    /// Collects the sums of the contact pass; then writes δ into its records (`sides`), if any pair is marked. True if so.
+    /// If any pair is marked, collects the sums of the contact pass and writes δ into its records (`sides`). True if so.
     /// `rows` are those of the first pass.
     pub fn fill(&self, rows: &[Line], sums: &mut [Line], sides: &mut [Line]) -> bool {
-        let needed = self.pairs.iter().any(TilePairs::has_marked);
+        if !self.pairs.iter().any(TilePairs::has_marked) {
+            return false;
+        }
         let own = &mut sides[..self.lists.n_padded() * D::SIDES_LINES];
         let tiles = sums
             .par_chunks_mut(TILE * D::SUM_LINES)
@@ -58,22 +63,22 @@ impl<D: SolidDimension> Deltas<'_, D> {
             .enumerate();
         tiles.for_each(|(t, ((sums, sides), rows))| {
             collect::<D>(self.lists, self.pairs, t, sums);
-            if needed {
-                for (b, rows) in rows.chunks_exact(Row::count::<D>()).enumerate() {
-                    for l in 0..LANES {
-                        if rows[Row::LEAST_EIGENVALUE].0[l] < CENTERING_EIGENVALUE {
-                            let k = b * LANES + l;
-                            let side = &mut sides[k * D::SIDES_LINES..(k + 1) * D::SIDES_LINES];
-                            self.particle(t * TILE + k, &sums[k * D::SUM_LINES].0, side);
-                        }
+            for (b, rows) in rows.chunks_exact(Row::count::<D>()).enumerate() {
+                let ahead = b + TILE_BLOCKS;
+                prefetch(sums, ahead * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
+                prefetch(rows, TILE_BLOCKS * Row::count::<D>() + Row::LEAST_EIGENVALUE, 1);
+                for l in 0..LANES {
+                    prefetch(sides, (ahead * LANES + l) * D::SIDES_LINES, 1);
+                    if rows[Row::LEAST_EIGENVALUE].0[l] < CENTERING_EIGENVALUE {
+                        let k = b * LANES + l;
+                        let side = &mut sides[k * D::SIDES_LINES..(k + 1) * D::SIDES_LINES];
+                        self.particle(t * TILE + k, &sums[k * D::SUM_LINES].0, side);
                     }
                 }
             }
         });
-        if needed {
-            self.refresh_copies(sides);
-        }
-        needed
+        self.refresh_copies(sides);
+        true
     }
 
     /// δ of particle `i` in the place of its impedances, if it is marked; all of it is in the first line.
@@ -102,11 +107,14 @@ impl<D: SolidDimension> Deltas<'_, D> {
 impl<D: SolidDimension> LaneKernel for CenteringTile<'_, '_, D> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { pass, index, pairs, buffer } = self;
+        let Self { pass, index, pairs, buffer, sums } = self;
         let lists = &pass.lists.tiles()[index];
         let mut marked = pairs.marked.iter();
         let mut forces = pairs.forces.chunks_exact(D::COUNT);
+        let ahead = Ahead::of(pass.lists, index);
         for b in 0..lists.n_blocks() {
+            prefetch(sums, b * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
+            ahead.records(b, pass.records, D::SIDES_LINES, 1);
             let (slots, targets) = lists.pairs(b);
             let marks = &marked.as_slice()[..slots.len()];
             marked = marked.as_slice()[slots.len()..].iter();

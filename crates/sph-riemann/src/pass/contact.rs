@@ -20,8 +20,9 @@
 use std::hint::black_box;
 
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, prefetch};
 
+use super::ahead::Ahead;
 use super::sums::{TilePairs, add_to_buffer};
 use super::{Pass, load_line, own_indices};
 use crate::dimension::{SolidDimension, cross, dot, times};
@@ -43,6 +44,8 @@ pub(super) struct ContactTile<'a, 'b, D: SolidDimension, const RECONSTRUCT: bool
     pub limiter: Limiter,
     pub pairs: &'a mut TilePairs,
     pub buffer: &'a mut [Line],
+    /// Where the sums of the tile's particles go afterwards: asked for ahead.
+    pub sums: &'a [Line],
 }
 
 /// Slots whose geometry is worked out in one go, before their contacts: roots and divisions of one do not wait for the sums
@@ -98,12 +101,15 @@ struct PairContact<D: SolidDimension, L: Lanes> {
 impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, '_, D, RECONSTRUCT> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { pass, index, limiter, pairs, buffer } = self;
+        let Self { pass, index, limiter, pairs, buffer, sums } = self;
         let lists = &pass.lists.tiles()[index];
         pairs.clear_forces();
         let limiter = Chosen { limiter, is_default: black_box(limiter == Limiter::VanLeer) };
         let mut approaches = [Approach::<D, L>::nowhere(); CHUNK];
+        let ahead = Ahead::of(pass.lists, index);
         for b in 0..lists.n_blocks() {
+            prefetch(sums, b * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
+            ahead.records(b, pass.records, D::SIDES_LINES, Left::<D, L, RECONSTRUCT>::LINES);
             let (slots, targets) = lists.pairs(b);
             let left = Left::<D, L, RECONSTRUCT>::load(
                 pass,

@@ -12,8 +12,9 @@
 //! Reads the records of the first pass, writes those of the second and the rows L and λ_min.
 
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, prefetch};
 
+use super::ahead::Ahead;
 use super::{Pass, load_line, own_indices, store_records};
 use crate::dimension::{SolidDimension, dual, spin_matrix, symmetric, times};
 use crate::record::{Row, Sides, State};
@@ -33,6 +34,9 @@ pub(super) struct GradientTile<'a, 'b, D: SolidDimension> {
 /// Below this eigenvalue of L the half step is centred on the true acceleration.
 pub(super) const CENTERING_EIGENVALUE: f64 = 0.75;
 
+/// Blocks by which records are asked for before they are written.
+const AHEAD: usize = 8;
+
 /// Sums over the neighbours of eight particles.
 struct Sums<D: SolidDimension, L: Lanes> {
     /// L.
@@ -47,9 +51,13 @@ impl<D: SolidDimension> LaneKernel for GradientTile<'_, '_, D> {
         let Self { pass, index, flags, sides, rows } = self;
         let lists = &pass.lists.tiles()[index];
         let first_block = index * sph_core::neighbors::TILE_BLOCKS;
+        let ahead = Ahead::of(pass.lists, index);
         let rows_of = rows.chunks_exact_mut(Row::count::<D>());
         let sides_of = sides.chunks_exact_mut(LANES * D::SIDES_LINES);
         for (b, (rows, sides)) in rows_of.zip(sides_of).enumerate() {
+            prefetch(rows, AHEAD * Row::count::<D>(), Row::count::<D>());
+            prefetch(sides, AHEAD * LANES * D::SIDES_LINES, LANES * D::SIDES_LINES);
+            ahead.records(b, pass.records, D::STATE_LINES, D::STATE_LINES);
             let indices = own_indices(first_block + b);
             let slots = lists.block(b);
             let own = load_state::<D, L>(pass, &indices);

@@ -3,6 +3,7 @@
 //! A pass runs over tiles of particles in parallel and over blocks of eight particles within a tile. Each particle
 //! gathers its own sums from its own list, in the order of the list: the same bits for any number of threads.
 
+mod ahead;
 mod centering;
 mod closure;
 mod contact;
@@ -21,7 +22,7 @@ use crate::record::Row;
 use crate::scheme::SurfaceTreatment;
 pub use centering::Deltas;
 pub use smoothing::{Sizes, Smoothing};
-use sums::AddRecords;
+use sums::{AddRecords, CopyRecords};
 pub use sums::{TilePairs, collect};
 
 /// What all passes read.
@@ -48,10 +49,28 @@ pub struct Tile<'a> {
 }
 
 enum Work<'a> {
-    Gradients { flags: Option<&'a [f64]>, sides: &'a mut [Line], rows: &'a mut [Line] },
-    Contacts { limiter: Option<Limiter>, pairs: &'a mut TilePairs, buffer: &'a mut [Line] },
-    Centering { pairs: &'a TilePairs, buffer: &'a mut [Line] },
-    Closure { stage: closure::Stage<'a>, rows: &'a [Line], output: &'a mut [Line] },
+    Gradients {
+        flags: Option<&'a [f64]>,
+        sides: &'a mut [Line],
+        rows: &'a mut [Line],
+    },
+    Contacts {
+        limiter: Option<Limiter>,
+        pairs: &'a mut TilePairs,
+        buffer: &'a mut [Line],
+        /// Where the sums of the tile's particles go afterwards.
+        sums: &'a [Line],
+    },
+    Centering {
+        pairs: &'a TilePairs,
+        buffer: &'a mut [Line],
+        sums: &'a [Line],
+    },
+    Closure {
+        stage: closure::Stage<'a>,
+        rows: &'a [Line],
+        output: &'a mut [Line],
+    },
 }
 
 impl<D: SolidDimension> Pass<'_, D> {
@@ -77,8 +96,9 @@ impl<D: SolidDimension> Pass<'_, D> {
     pub fn contacts(&self, limiter: Option<Limiter>, sums: &mut [Line], pairs: &mut [TilePairs]) {
         self.check_records(D::SIDES_LINES);
         self.run_with_buffers(sums, pairs, |index, pairs, buffer, own| {
-            D::run(self, Tile { index, work: Work::Contacts { limiter, pairs, buffer } });
-            own.copy_from_slice(&buffer[..own.len()]);
+            D::run(self, Tile { index, work: Work::Contacts { limiter, pairs, buffer, sums: own } });
+            let from = &buffer[..own.len()];
+            dispatch_with(self.instructions, CopyRecords { into: own, from });
             true
         });
     }
@@ -91,7 +111,7 @@ impl<D: SolidDimension> Pass<'_, D> {
         self.check_records(D::SIDES_LINES);
         self.run_with_buffers(sums, pairs, |index, pairs, buffer, own| {
             if pairs.has_marked() {
-                D::run(self, Tile { index, work: Work::Centering { pairs, buffer } });
+                D::run(self, Tile { index, work: Work::Centering { pairs, buffer, sums: own } });
                 let (sums, stride) = (&buffer[..own.len()], D::SUM_LINES);
                 let add = AddRecords { into: own, particles: None, first: 0, sums, stride };
                 dispatch_with(self.instructions, add);
@@ -113,7 +133,7 @@ impl<D: SolidDimension> Pass<'_, D> {
         tiles.for_each(|(index, (own, pairs))| {
             sums::with_buffer(self.lists.tiles()[index].n_targets() * D::SUM_LINES, |buffer| {
                 let any = work(index, pairs, buffer, own);
-                pairs.set_foreign(if any { &buffer[own.len()..] } else { &[] });
+                pairs.set_foreign(if any { &buffer[own.len()..] } else { &[] }, self.instructions);
             });
         });
     }
@@ -130,19 +150,19 @@ impl<D: SolidDimension> Pass<'_, D> {
             Work::Gradients { flags, sides, rows } => {
                 dispatch_with(set, gradient::GradientTile { pass: self, index, flags, sides, rows })
             }
-            Work::Contacts { limiter: Some(limiter), pairs, buffer } => dispatch_with(
+            Work::Contacts { limiter: Some(limiter), pairs, buffer, sums } => dispatch_with(
                 set,
-                contact::ContactTile::<D, true> { pass: self, index, limiter, pairs, buffer },
+                contact::ContactTile::<D, true> { pass: self, index, limiter, pairs, buffer, sums },
             ),
-            Work::Contacts { limiter: None, pairs, buffer } => {
+            Work::Contacts { limiter: None, pairs, buffer, sums } => {
                 let limiter = Limiter::default(); // Not asked for.
                 dispatch_with(
                     set,
-                    contact::ContactTile::<D, false> { pass: self, index, limiter, pairs, buffer },
+                    contact::ContactTile::<D, false> { pass: self, index, limiter, pairs, buffer, sums },
                 );
             }
-            Work::Centering { pairs, buffer } => {
-                dispatch_with(set, centering::CenteringTile { pass: self, index, pairs, buffer })
+            Work::Centering { pairs, buffer, sums } => {
+                dispatch_with(set, centering::CenteringTile { pass: self, index, pairs, buffer, sums })
             }
             Work::Closure { stage, rows, output } => {
                 dispatch_with(set, closure::ClosureTile { pass: self, index, stage, rows, output })

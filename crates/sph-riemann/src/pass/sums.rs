@@ -7,7 +7,7 @@
 
 use std::cell::RefCell;
 
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, dispatch};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch, dispatch_with};
 use sph_core::neighbors::{NeighborLists, TILE};
 
 use crate::dimension::SolidDimension;
@@ -39,9 +39,26 @@ impl TilePairs {
         self.forces.clear();
     }
 
-    pub(super) fn set_foreign(&mut self, sums: &[Line]) {
-        self.foreign.clear();
-        self.foreign.extend_from_slice(sums);
+    pub(super) fn set_foreign(&mut self, sums: &[Line], instructions: InstructionSet) {
+        self.foreign.resize(sums.len(), Line::default());
+        dispatch_with(instructions, CopyRecords { into: &mut self.foreign, from: sums });
+    }
+}
+
+/// Copies some hundred lines. The library's copy of that many bytes takes an instruction that is slow for lines that no
+/// cache holds, even if they have been asked for.
+pub(super) struct CopyRecords<'a> {
+    pub into: &'a mut [Line],
+    pub from: &'a [Line],
+}
+
+impl LaneKernel for CopyRecords<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        assert_eq!(self.into.len(), self.from.len());
+        for (into, from) in self.into.iter_mut().zip(self.from) {
+            L::load(&from.0).store(&mut into.0);
+        }
     }
 }
 

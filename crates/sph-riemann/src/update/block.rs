@@ -1,7 +1,7 @@
 //! The update of eight particles at a time.
 
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, dispatch_with, exp};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, dispatch_with, exp, prefetch};
 use sph_core::particles::Constraint;
 
 use super::{Context, Fixed, LARGEST_RELAXATION, TileColumns, TileReport};
@@ -10,11 +10,16 @@ use crate::matter::{Eight, Numbers, Tension};
 use crate::record::{Row, Sides, Sums};
 use crate::scheme::SurfaceTreatment;
 
+/// Blocks by which the state is asked for before it is used.
+const AHEAD: usize = 8;
+
 /// The update of the particles of one tile.
 pub struct UpdateTile<'a, D: SolidDimension> {
     pub(super) columns: TileColumns<'a, D>,
     /// Index of the first particle.
     pub(super) first: usize,
+    /// What the pairs of the tile's particles added up to.
+    pub(super) sums: &'a [Line],
     pub(super) fixed: &'a Fixed<'a>,
     pub(super) context: &'a Context<'a>,
     pub(super) report: &'a mut TileReport,
@@ -25,6 +30,33 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
     pub(crate) fn dispatch(self) {
         dispatch_with(self.context.instructions, self);
     }
+
+    /// Asks for what the update of the eight particles at place `k` reads; they may belong to a later tile.
+    #[inline(always)]
+    fn prefetch(&self, k: usize) {
+        let (i, context, columns) = (self.first + k, &self.context, &self.columns);
+        prefetch(context.rows, i / LANES * Row::count::<D>(), Row::count::<D>());
+        if context.settings.scheme.reconstructs() {
+            let of_correction = Sides::correction::<D>() / LANES;
+            for l in 0..LANES {
+                prefetch(context.sides, (i + l) * D::SIDES_LINES + of_correction, 1);
+            }
+        }
+        for a in 0..D::COUNT {
+            prefetch(columns.position[a], k, LANES);
+            prefetch(columns.velocity[a], k, LANES);
+        }
+        for c in 0..D::TENSOR_COUNT {
+            prefetch(columns.deviator[c], k, LANES);
+        }
+        for column in [&columns.density, &columns.energy, &columns.plastic_strain, &columns.relative_speed] {
+            prefetch(column, k, LANES);
+        }
+        prefetch(columns.distension, k, LANES);
+        for column in [self.fixed.mass, self.fixed.size, self.fixed.packing_excess] {
+            prefetch(column, i, LANES);
+        }
+    }
 }
 
 impl<D: SolidDimension> LaneKernel for UpdateTile<'_, D> {
@@ -32,6 +64,7 @@ impl<D: SolidDimension> LaneKernel for UpdateTile<'_, D> {
     fn run<L: Lanes>(mut self) {
         let mut relaxation_work = L::zero();
         for k in (0..self.columns.density.len()).step_by(LANES) {
+            self.prefetch(k + AHEAD * LANES);
             let block = Block::<D, L>::load(&self, k);
             let motion = self.advance_motion(&block);
             let flow = self.advance_density(&block, &motion);
@@ -115,19 +148,19 @@ fn load_own<L: Lanes, R: Components<L>>(
 impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
     #[inline(always)]
     fn load(tile: &UpdateTile<'a, D>, k: usize) -> Self {
-        let (i, outcome) = (tile.first + k, &tile.context.outcome);
+        let (i, context) = (tile.first + k, &tile.context);
         let valid = (tile.columns.density.len() - k).min(LANES);
         let constraint = &tile.fixed.constraint[i..i + valid];
         let mut sums = D::SumsRecord::<L>::splat(L::zero());
         for line in 0..D::SUM_LINES {
-            load_own::<L, _>(&mut sums, outcome.sums, D::SUM_LINES, line, i);
+            load_own::<L, _>(&mut sums, tile.sums, D::SUM_LINES, line, k);
         }
         let mut correction = D::Symmetric::<L>::splat(L::zero());
         if tile.context.settings.scheme.reconstructs() {
             let mut sides = D::SidesRecord::<L>::splat(L::zero());
             let first = Sides::correction::<D>();
             for line in first / LANES..=(first + D::STRESS_COUNT - 1) / LANES {
-                load_own::<L, _>(&mut sides, outcome.sides, D::SIDES_LINES, line, i);
+                load_own::<L, _>(&mut sides, context.sides, D::SIDES_LINES, line, i);
             }
             for c in 0..D::STRESS_COUNT {
                 correction[c] = sides[first + c];
@@ -151,7 +184,7 @@ impl<'a, D: SolidDimension, L: Lanes> Block<'a, D, L> {
         Self {
             k,
             i,
-            rows: &outcome.rows[i / LANES * count..][..count],
+            rows: &context.rows[i / LANES * count..][..count],
             sums,
             correction,
             numbers: tile.context.matter.numbers::<L>(material),

@@ -20,7 +20,7 @@ mod plain;
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::lanes::{InstructionSet, Line};
-use sph_core::neighbors::TILE;
+use sph_core::neighbors::{NeighborLists, TILE};
 use sph_core::particles::{Constraint, Particles};
 use sph_core::tiles::TiledColumn;
 
@@ -28,6 +28,7 @@ use crate::dimension::SolidDimension;
 use crate::error::{Stage, StepError};
 use crate::interventions::Interventions;
 use crate::matter::Matter;
+use crate::pass::{TilePairs, collect};
 use crate::scheme::{Settings, SurfaceTreatment};
 use crate::time_step::TimeStepReason;
 pub use block::UpdateTile;
@@ -69,14 +70,17 @@ pub struct StepEnd {
 }
 
 /// What the passes found.
-#[derive(Clone, Copy)]
-pub struct Outcome<'a> {
+pub struct Outcome<'a, D: SolidDimension> {
     /// Rows of blocks.
     pub rows: &'a [Line],
     /// Records of the contact pass.
     pub sides: &'a [Line],
-    /// What pairs added up to.
-    pub sums: &'a [Line],
+    /// What pairs added up to, without what tiles have for each other.
+    pub sums: &'a mut [Line],
+    /// The lists.
+    pub lists: &'a NeighborLists<D>,
+    /// What tiles have for each other.
+    pub pairs: &'a [TilePairs],
 }
 
 /// Columns of particles that a step changes.
@@ -96,7 +100,8 @@ struct Columns<'a, D: Dimension> {
 struct Context<'a> {
     matter: &'a Matter,
     settings: &'a Settings,
-    outcome: Outcome<'a>,
+    rows: &'a [Line],
+    sides: &'a [Line],
     time_step: f64,
     instructions: InstructionSet,
     /// Eigenvalue of L below which its inverse is capped [-]; zero where nothing is.
@@ -108,7 +113,7 @@ pub fn update<D: SolidDimension>(
     particles: &mut Particles<D>,
     matter: &Matter,
     settings: &Settings,
-    outcome: Outcome<'_>,
+    outcome: Outcome<'_, D>,
     (time_step, instructions): (f64, InstructionSet),
     reports: &mut [TileReport],
 ) {
@@ -120,7 +125,7 @@ fn for_each_tile<D: SolidDimension>(
     particles: &mut Particles<D>,
     matter: &Matter,
     settings: &Settings,
-    outcome: Outcome<'_>,
+    outcome: Outcome<'_, D>,
     (time_step, instructions): (f64, InstructionSet),
     reports: &mut [TileReport],
     work: impl Fn(UpdateTile<'_, D>) + Sync,
@@ -145,7 +150,8 @@ fn for_each_tile<D: SolidDimension>(
         SurfaceTreatment::SpectralCap { cap } if settings.scheme.reconstructs() => 1.0 / cap,
         _ => 0.0,
     };
-    let context = Context { matter, settings, outcome, time_step, instructions, least_eigenvalue };
+    let Outcome { rows, sides, sums, lists, pairs } = outcome;
+    let context = Context { matter, settings, rows, sides, time_step, instructions, least_eigenvalue };
     let fixed = Fixed {
         material: &particles.material,
         constraint: &particles.constraint,
@@ -153,11 +159,13 @@ fn for_each_tile<D: SolidDimension>(
         size: &particles.size,
         packing_excess: &particles.packing_excess,
     };
-    reports.par_iter_mut().enumerate().for_each(|(t, report)| {
+    let sums_of = sums.par_chunks_mut(TILE * D::SUM_LINES);
+    reports.par_iter_mut().zip(sums_of).enumerate().for_each(|(t, (report, sums))| {
+        collect(lists, pairs, t, sums);
         // SAFETY: the parallel iterator visits every tile once, and these are the only parts taken.
         let columns = unsafe { TileColumns::<D>::take(&columns, t) };
         *report = TileReport::default();
-        work(UpdateTile { columns, first: t * TILE, fixed: &fixed, context: &context, report });
+        work(UpdateTile { columns, first: t * TILE, sums, fixed: &fixed, context: &context, report });
     });
 }
 

@@ -20,11 +20,11 @@ struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    fn of<D: SolidDimension>(outcome: &Outcome<'a>, i: usize) -> Self {
+    fn of<D: SolidDimension>(context: &Context<'a>, i: usize, sums: &'a [Line]) -> Self {
         Self {
-            rows: &outcome.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
-            sides: &outcome.sides[i * D::SIDES_LINES..][..D::SIDES_LINES],
-            sums: &outcome.sums[i * D::SUM_LINES..][..D::SUM_LINES],
+            rows: &context.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
+            sides: &context.sides[i * D::SIDES_LINES..][..D::SIDES_LINES],
+            sums,
             lane: i % LANES,
         }
     }
@@ -41,9 +41,9 @@ impl<'a> Found<'a> {
 
 /// Updates all particles of a tile.
 fn update_tile<D: SolidDimension>(tile: UpdateTile<'_, D>) {
-    let UpdateTile { mut columns, first, fixed, context, report } = tile;
+    let UpdateTile { mut columns, first, sums, fixed, context, report } = tile;
     for k in 0..columns.density.len() {
-        let found = Found::of::<D>(&context.outcome, first + k);
+        let found = Found::of::<D>(context, first + k, &sums[k * D::SUM_LINES..]);
         columns.particle(k, first + k, fixed, context, found, report);
     }
 }
@@ -351,7 +351,9 @@ mod tests {
             let mut plain = simulation.particles.clone();
             let mut reports = vec![TileReport::default(); plain.len().div_ceil(256)];
             let scratch = &simulation.scratch;
-            let outcome = Outcome { rows: &scratch.rows, sides: &scratch.sides, sums: &scratch.sums };
+            let (rows, sides, mut sums) = (&scratch.rows, &scratch.sides, scratch.sums.clone());
+            let (lists, pairs) = (&simulation.lists, &scratch.pairs);
+            let outcome = Outcome { rows, sides, sums: &mut sums, lists, pairs };
             let matter = Matter::new(simulation.materials().to_vec());
             let how = (time_step, InstructionSet::Plain);
             for_each_tile::<D>(&mut plain, &matter, &settings, outcome, how, &mut reports, update_tile);

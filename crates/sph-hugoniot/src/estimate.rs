@@ -29,7 +29,7 @@ pub struct PointEstimate {
     pub particles: usize,
     /// Fewest cells fed.
     pub fed_cells: usize,
-    /// Steps to feed them.
+    /// Steps to feed them [-].
     pub steps: f64,
     /// Time on one core [s].
     pub seconds: f64,

@@ -56,7 +56,7 @@ pub struct PointOutcome {
     pub states: Option<States>,
     /// What the jump conditions of mass, momentum and energy are missed by [-].
     pub residuals: Option<JumpResiduals>,
-    /// Cells fed.
+    /// Cells fed [-].
     pub fed_cells: f64,
     /// Steps made.
     pub steps: u64,

@@ -35,12 +35,12 @@ fn independent_error(values: &[f64]) -> f64 {
     (squares / (n - 1.0) / n).sqrt()
 }
 
-/// Arithmetic mean.
+/// Arithmetic mean, in the unit of the values.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Mean velocity over cells of equal length: their length over their time.
+/// Mean velocity [m/s] over cells of equal length: their length over their time.
 pub fn harmonic_mean(velocities: &[f64]) -> f64 {
     1.0 / mean(&velocities.iter().map(|v| 1.0 / v).collect::<Vec<_>>())
 }

@@ -71,9 +71,9 @@ pub struct RunStatus {
     pub go_on: String,
     /// Process id of the run.
     pub process: u32,
-    /// When it began, seconds since 1970.
+    /// When it began, since 1970 [s].
     pub started: f64,
-    /// When this was written, seconds since 1970.
+    /// When this was written, since 1970 [s].
     pub updated: f64,
     /// Time left for the points that are known, at the pace so far [s].
     pub seconds_left: Option<f64>,

@@ -41,13 +41,13 @@ const FEWEST: f64 = 4.0;
 /// Length of the window from u_p.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AutoLength {
-    /// Cells while pores stay open.
+    /// Length while pores stay open [cells].
     pub open: f64,
-    /// Cells when they shut at once.
+    /// Length when they shut at once [cells].
     pub shut: f64,
     /// u_c, from which on they begin to shut [m/s].
     pub closing: f64,
-    /// Cells at the least.
+    /// Length at the least [cells].
     pub least: f64,
 }
 

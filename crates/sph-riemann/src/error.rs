@@ -35,7 +35,7 @@ pub enum SetupError {
         particle: u64,
         /// Which field.
         field: &'static str,
-        /// Its value.
+        /// Its value, in `unit`.
         value: f64,
         /// Its unit.
         unit: &'static str,

@@ -52,7 +52,7 @@ impl SchemeName {
         }
     }
 
-    /// Courant number of the scheme's published figures: CSPH 0.3, TKC-MUSCL-SPH 0.1, TKC-Hancock 0.4.
+    /// Courant number [-] of the scheme's published figures: CSPH 0.3, TKC-MUSCL-SPH 0.1, TKC-Hancock 0.4.
     pub fn courant(self) -> f64 {
         match self {
             Self::Csph => 0.3,

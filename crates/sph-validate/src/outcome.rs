@@ -68,7 +68,7 @@ pub struct Field {
     pub title: String,
     /// What the values are, with their unit.
     pub label: String,
-    /// Values at the ends of the color bar.
+    /// Values at the ends of the color bar, in the unit of the label.
     pub range: (f64, f64),
     /// Places of the particles [mm].
     pub x: Vec<f64>,
@@ -76,7 +76,7 @@ pub struct Field {
     pub y: Vec<f64>,
     /// Extent of the particles [mm].
     pub size: Vec<f64>,
-    /// Values.
+    /// Values, in the unit of the label.
     pub values: Vec<f64>,
 }
 

@@ -30,14 +30,14 @@ pub struct Row {
     pub metric: String,
     /// What kind of figure.
     pub kind: Kind,
-    /// Its value; null if it is not a number.
+    /// Its value, in `unit`; null if it is not a number.
     #[schemars(with = "Option<f64>")]
     pub value: f64,
     /// Its unit.
     pub unit: String,
     /// What it should be; absent for an order, and for the finest run where that is the reference of the others.
     pub reference: Option<f64>,
-    /// Distance from the reference.
+    /// Distance from the reference, in `unit`.
     pub error: Option<f64>,
     /// What it must reach; absent for a figure that is only shown.
     pub gate: Option<Gate>,

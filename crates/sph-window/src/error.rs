@@ -10,7 +10,7 @@ pub enum WindowError {
     Setting {
         /// Name of the setting.
         field: &'static str,
-        /// Its value, in SI units.
+        /// Its value, in `unit`.
         value: f64,
         /// Unit of the value.
         unit: &'static str,

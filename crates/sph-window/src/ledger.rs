@@ -149,7 +149,7 @@ impl Ledger {
         difference
     }
 
-    /// Largest residual as a part of all that was ever booked of the same content: round-off when the ledger closes.
+    /// Largest residual as a part of all that was ever booked of the same content [-]: round-off when the ledger closes.
     pub fn relative_residual(&self, now: &Content) -> f64 {
         let [mass, momentum, energy] = self.relative_residuals(now);
         mass.max(momentum).max(energy)

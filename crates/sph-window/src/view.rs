@@ -26,7 +26,7 @@ impl<D: SolidDimension> Window<D> {
         Content::of_particles(self.simulation.particles())
     }
 
-    /// Largest gap of the ledger, relative to all that was booked; round-off.
+    /// Largest gap of the ledger, relative to all that was booked [-]; round-off.
     pub fn ledger_residual(&self) -> f64 {
         self.progress.ledger.relative_residual(&self.content())
     }
@@ -126,7 +126,7 @@ impl<D: SolidDimension> Window<D> {
         self.feed.fed_length()
     }
 
-    /// Number of periods of the medium that have come in since the start.
+    /// Number of periods of the medium that have come in since the start [-].
     pub fn fed_cells(&self) -> f64 {
         self.feed.fed_length() / self.feed.sample().period()
     }

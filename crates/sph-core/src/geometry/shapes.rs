@@ -14,7 +14,7 @@ pub enum Shape<D: Dimension> {
     HalfSpace {
         /// A point of the plane [m].
         point: D::Vector,
-        /// Outward normal.
+        /// Outward normal, of any length [-].
         normal: D::Vector,
     },
     /// A box along the axes.

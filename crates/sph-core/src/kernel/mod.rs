@@ -90,7 +90,7 @@ impl KernelFamily {
     /// Every kernel, in the order of declaration.
     pub const ALL: [Self; 4] = [Self::WendlandC2, Self::WendlandC4, Self::CubicSpline, Self::Quintic];
 
-    /// Radius of the support in smoothing lengths.
+    /// Radius of the support in smoothing lengths [-].
     pub fn support(self) -> f64 {
         with_kernel!(self, K => K::SUPPORT)
     }

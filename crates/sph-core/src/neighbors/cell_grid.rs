@@ -52,7 +52,7 @@ impl<D: Dimension> CellGrid<D> {
         self.len() == 0
     }
 
-    /// Cell coordinates of a point.
+    /// Cell coordinates of a point, given its coordinate along each axis [m].
     #[inline]
     pub fn coordinates(&self, point: impl Fn(usize) -> f64) -> [usize; 3] {
         let mut at = [0; 3];

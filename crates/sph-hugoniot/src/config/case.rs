@@ -148,8 +148,8 @@ pub struct Output {
 /// A series of moments of each point for ParaView.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Snapshots {
-    /// Cells that the front sweeps between two moments.
+    /// Cells that the front sweeps between two moments [-].
     pub every_cells: f64,
-    /// Bytes that a point may write.
+    /// What a point may write [bytes].
     pub limit_bytes: f64,
 }

@@ -35,7 +35,7 @@ pub struct Calibration {
     pub elastic_pressure_error: f64,
     /// Standard error of P_s [Pa].
     pub solid_pressure_error: f64,
-    /// Standard error of n; none where it is given.
+    /// Standard error of n [-]; none where it is given.
     pub exponent_error: Option<f64>,
     /// Points with open pores that were used; (P [Pa], α).
     pub open: Vec<(f64, f64)>,

@@ -32,7 +32,7 @@ use super::least_squares::{self, Solution};
 
 /// Part of a normal distribution within one standard deviation.
 const ONE_SIGMA: f64 = 0.682_689_492_137;
-/// Level of the band that is drawn.
+/// Confidence level of the band that is drawn [-].
 pub const BAND: f64 = 0.95;
 /// Places that a break is tried at between the outermost ones.
 const SCAN: usize = 120;
@@ -120,19 +120,19 @@ pub struct Fit {
     pub form: Form,
     /// Parameters, in the order of [`Form::parameters`] [m/s, 1, s/m].
     pub values: Vec<f64>,
-    /// Their standard errors, widened where need be.
+    /// Their standard errors, in the units of the values, widened where need be.
     pub errors: Vec<f64>,
-    /// Their covariance, widened where need be.
+    /// Their covariance, in products of the units of the values, widened where need be.
     pub covariance: Vec<Vec<f64>>,
     /// χ² with the errors of the points as given; the sum of squares [m²/s²] where they have none.
     pub chi_squared: f64,
     /// ν: points less parameters.
     pub degrees_of_freedom: usize,
-    /// χ²/ν; none for ν = 0.
+    /// χ²/ν [-]; none for ν = 0.
     pub reduced_chi_squared: Option<f64>,
-    /// Probability of a χ² this great or greater if form and errors are right; none without errors of the points.
+    /// Probability of a χ² this great or greater if form and errors are right [-]; none without errors of the points.
     pub probability: Option<f64>,
-    /// Factor by which errors were widened: 1, or √(χ²/ν).
+    /// Factor by which errors were widened [-]: 1, or √(χ²/ν).
     pub widened_by: f64,
     /// Where the errors come from.
     pub error_source: ErrorSource,

@@ -22,11 +22,11 @@ const CONVERGED: f64 = 1e-12;
 /// What a fit gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// Parameters.
+    /// Parameters, in units that are the caller's.
     pub parameters: Vec<f64>,
     /// Their covariance, from the errors of the values as they were given.
     pub covariance: DMatrix<f64>,
-    /// χ² at the parameters.
+    /// χ² at the parameters [-].
     pub chi_squared: f64,
 }
 

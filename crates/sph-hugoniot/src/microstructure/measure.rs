@@ -13,7 +13,7 @@ use super::shape::Shape;
 use crate::config::case::Medium;
 use crate::config::units::{LengthKind, show};
 
-/// A gap or a pore below this many particle sizes is not resolved.
+/// A gap or a pore below this many particle sizes is not resolved [D].
 pub const RESOLVED: f64 = 4.0;
 
 /// Points of the grid along the longer edge of a cell, at most.

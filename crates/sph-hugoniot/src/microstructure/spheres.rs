@@ -37,7 +37,7 @@ pub enum SphereError {
     Setting {
         /// Which.
         field: &'static str,
-        /// Its value.
+        /// Its value, in `unit`.
         value: f64,
         /// Its unit.
         unit: &'static str,

@@ -28,7 +28,7 @@ const FRAME_WIDTH: f64 = 480.0;
 pub struct RunFacts {
     /// The command.
     pub command: String,
-    /// When it began, seconds since 1970.
+    /// When it began, since 1970 [s].
     pub started: f64,
     /// How long it took [s].
     pub seconds: f64,

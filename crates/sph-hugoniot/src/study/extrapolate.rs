@@ -50,7 +50,7 @@ pub struct Extrapolated {
     pub statistical: f64,
     /// Part of it from the orders that were taken [m/s].
     pub order_spread: f64,
-    /// Order that fits best; none where the points do not show one.
+    /// Order that fits best [-]; none where the points do not show one.
     pub observed_order: Option<f64>,
 }
 

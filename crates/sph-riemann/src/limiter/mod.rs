@@ -62,7 +62,7 @@ impl Limiter {
     pub const ALL: [Self; 4] =
         [Self::MinmodPrinted, Self::MinmodTvd, Self::VanLeer, Self::MonotonizedCentral];
 
-    /// Half the limited difference, for one pair of numbers.
+    /// Half the limited difference, for one pair of numbers d and g, in their unit.
     pub fn half(self, difference: f64, gradient: f64) -> f64 {
         with_limiter!(self, M => M::half(difference, gradient))
     }

@@ -27,7 +27,7 @@ pub enum RiemannError {
     Parameter {
         /// Which parameter.
         name: &'static str,
-        /// Its value in SI units.
+        /// Its value in SI units: [Pa] or [kg/m³].
         value: f64,
     },
     /// An initial deviator lies outside of the yield surface.

@@ -141,7 +141,7 @@ pub struct Trial {
     pub inlet_velocity: f64,
     /// `⟨dω/dt⟩` [1/s]; none for the approach.
     pub drift: Option<f64>,
-    /// Periods of the medium that were fed.
+    /// Periods of the medium that were fed [-].
     pub fed: f64,
     /// Particles advanced in it.
     pub particle_steps: u64,

@@ -1,6 +1,6 @@
 //! Eight numbers at a time.
 //!
-//! The pair loops work on eight consecutive particles at once, one per lane. A sum over neighbours is then eight
+//! The pair loops work on eight consecutive particles at once, one per lane. A sum over neighbors is then eight
 //! independent sums, each in the order of its own list: no horizontal sums, and the same bits whatever the width of the
 //! registers. [`Lanes`] is implemented for AVX-512 (one register), AVX2 with fused multiply-add (two registers) and
 //! plain arrays; [`dispatch`] picks the widest that the machine has, at run time.
@@ -87,7 +87,7 @@ pub trait Lanes: Real {
     /// In debug builds, if a record is outside `lines`.
     ///
     /// # Safety
-    /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbour list guarantees it.
+    /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbor list guarantees it.
     unsafe fn load_records(
         lines: &[Line],
         stride: usize,
@@ -116,7 +116,7 @@ pub trait Lanes: Real {
     /// In debug builds, if a record is outside `lines`.
     ///
     /// # Safety
-    /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbour list guarantees it.
+    /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbor list guarantees it.
     #[inline(always)]
     unsafe fn add_to_records<const MAXIMUM: bool>(
         block: [Self; LANES],

@@ -3,7 +3,7 @@
 //! The slots of a block come in two parts. The first lists each pair **once**, at the particle that owns it
 //! ([`super::search`] decides); a loop that solves a pair for both of its particles runs over this part and adds to a
 //! buffer of the tile: the particles of the tile first, then those of other tiles that it meets ("foreign"). For each
-//! slot the list says where in the buffer the sums of the eight neighbours stand. The second part lists the pairs that the
+//! slot the list says where in the buffer the sums of the eight neighbors stand. The second part lists the pairs that the
 //! other particle owns: both parts together are the full list.
 
 use crate::lanes::{LANES, prefetch};
@@ -21,9 +21,9 @@ pub struct TileLists {
     start: Vec<u32>,
     /// Number of slots that list pairs once, in the blocks before each block, and of all.
     once: Vec<u32>,
-    /// Slots: the k-th neighbour of each of eight particles.
+    /// Slots: the k-th neighbor of each of eight particles.
     slots: Vec<[u32; LANES]>,
-    /// Places in the tile's buffer of the neighbours in the slots that list pairs once.
+    /// Places in the tile's buffer of the neighbors in the slots that list pairs once.
     targets: Vec<[u16; LANES]>,
     /// Particles of other tiles that have a place in the buffer, ascending.
     foreign: Vec<u32>,
@@ -51,7 +51,7 @@ impl TileLists {
         Self { start: vec![0], once: vec![0], ..Self::default() }
     }
 
-    /// Adds a block: for each lane the pairs that it owns, and those that the neighbour owns. Lists are filled up with the
+    /// Adds a block: for each lane the pairs that it owns, and those that the neighbor owns. Lists are filled up with the
     /// particle itself, at distance zero, whose terms vanish.
     pub(super) fn push_block(
         &mut self,
@@ -130,13 +130,13 @@ impl TileLists {
         self.start.len() - 1
     }
 
-    /// All slots of a block of the tile: every neighbour of each of its particles.
+    /// All slots of a block of the tile: every neighbor of each of its particles.
     #[inline(always)]
     pub fn block(&self, block: usize) -> &[[u32; LANES]] {
         &self.slots[self.start[block] as usize..self.start[block + 1] as usize]
     }
 
-    /// The slots of a block that list pairs once, and the places of the neighbours in the tile's buffer.
+    /// The slots of a block that list pairs once, and the places of the neighbors in the tile's buffer.
     #[inline(always)]
     pub fn pairs(&self, block: usize) -> (&[[u32; LANES]], &[[u16; LANES]]) {
         let targets = &self.targets[self.once[block] as usize..self.once[block + 1] as usize];

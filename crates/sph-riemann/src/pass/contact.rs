@@ -63,7 +63,7 @@ struct Approach<D: SolidDimension, L: Lanes> {
     /// w [m^(d-1)], and w over the distance [m^(d-2)].
     weight: L,
     weight_over_r: L,
-    /// True if time-centring needs the force of one of the pairs.
+    /// True if time-centering needs the force of one of the pairs.
     marked: bool,
 }
 
@@ -214,7 +214,7 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
             let r = dot::<D, L>(&dx, &dx).sqrt();
             let scales = pass.smoothing.scales(self.size, &slots[k]);
             let q = r * scales.inverse_h;
-            // A particle stands in for missing neighbours of its own: e = 0 there, and all is zero.
+            // A particle stands in for missing neighbors of its own: e = 0 there, and all is zero.
             let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
             let volume = first_line[Sides::volume::<D>()];
             let volumes = self.twice_volume * volume.abs();

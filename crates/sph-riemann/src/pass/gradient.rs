@@ -31,13 +31,13 @@ pub(super) struct GradientTile<'a, 'b, D: SolidDimension> {
     pub rows: &'a mut [Line],
 }
 
-/// Below this eigenvalue of L the half step is centred on the true acceleration.
+/// Below this eigenvalue of L the half step is centered on the true acceleration.
 pub(super) const CENTERING_EIGENVALUE: f64 = 0.75;
 
 /// Blocks by which records are asked for before they are written.
 const AHEAD: usize = 8;
 
-/// Sums over the neighbours of eight particles.
+/// Sums over the neighbors of eight particles.
 struct Sums<D: SolidDimension, L: Lanes> {
     /// L.
     matrix: D::Symmetric<L>,

@@ -1,4 +1,4 @@
-//! Passes over the pairs: gradients, contact, time-centring.
+//! Passes over the pairs: gradients, contact, time-centering.
 //!
 //! A pass runs over tiles of particles in parallel and over blocks of eight particles within a tile. Each particle
 //! gathers its own sums from its own list, in the order of the list: the same bits for any number of threads.
@@ -34,7 +34,7 @@ pub struct Pass<'a, D: SolidDimension> {
     pub smoothing: Smoothing<'a>,
     /// What is done at free surfaces.
     pub surface: SurfaceTreatment,
-    /// Records that are read: of the first pass for gradients, of the second for contacts and time-centring.
+    /// Records that are read: of the first pass for gradients, of the second for contacts and time-centering.
     pub records: &'a [Line],
     /// Half the time step [s], zero in schemes without a half step.
     pub half_step: f64,
@@ -103,7 +103,7 @@ impl<D: SolidDimension> Pass<'_, D> {
         });
     }
 
-    /// Time-centring of the pairs that the contact pass has marked: adds to the sums.
+    /// Time-centering of the pairs that the contact pass has marked: adds to the sums.
     ///
     /// # Panics
     /// As [`Pass::gradients`].

@@ -110,7 +110,7 @@ struct Motion<D: SolidDimension, L: Lanes> {
 struct Flow<L> {
     density: L,
     energy: L,
-    /// Work of the volume consistency [J], per metre of depth in the plane.
+    /// Work of the volume consistency [J], per meter of depth in the plane.
     relaxation_work: L,
 }
 

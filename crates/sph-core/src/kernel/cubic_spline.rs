@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 use super::SmoothingKernel;
 use crate::lanes::Real;
 
-/// M4 cubic spline, support 2 h.
+/// M4 cubic spline, support 2 h; formula, normalization and source: [its module](self).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CubicSpline;
 

@@ -18,10 +18,10 @@
 //!
 //! Source of the paper's choice: Rublev & Murzov, arXiv 2410.14646, section 2 (Wendland C2).
 
-mod cubic_spline;
-mod quintic;
-mod wendland_c2;
-mod wendland_c4;
+pub mod cubic_spline;
+pub mod quintic;
+pub mod wendland_c2;
+pub mod wendland_c4;
 
 pub use cubic_spline::CubicSpline;
 pub use quintic::Quintic;

@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 use super::SmoothingKernel;
 use crate::lanes::Real;
 
-/// M6 quintic spline, support 3 h.
+/// M6 quintic spline, support 3 h; formula, normalization and source: [its module](self).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quintic;
 

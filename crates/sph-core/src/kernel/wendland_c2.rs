@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use super::SmoothingKernel;
 use crate::lanes::Real;
 
-/// Wendland C2, support 2 h.
+/// Wendland C2, support 2 h; formula, normalization and source: [its module](self).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WendlandC2;
 

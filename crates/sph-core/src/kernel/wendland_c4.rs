@@ -10,7 +10,7 @@ use super::SmoothingKernel;
 use super::wendland_c2::distance_to_edge;
 use crate::lanes::Real;
 
-/// Wendland C4, support 2 h.
+/// Wendland C4, support 2 h; formula, normalization and source: [its module](self).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WendlandC4;
 

@@ -2,8 +2,8 @@
 //! and the particles at the end.
 
 mod fields;
-mod precursor;
-mod profile;
+pub mod precursor;
+pub mod profile;
 mod states;
 
 pub use fields::{Fields, drawn_size};

@@ -19,7 +19,7 @@
 use super::Parameter;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the model.
+/// Parameters of the linear equation of state; formula, validity and source: [its module](self).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Linear {

@@ -30,7 +30,7 @@
 use super::Parameter;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the model.
+/// Parameters of the Mie-Grüneisen equation of state; formula, validity and source: [its module](self).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MieGruneisen {

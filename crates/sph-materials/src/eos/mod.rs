@@ -19,11 +19,11 @@
 //! One file with the four functions and the documentation that the others have, one variant, one arm in each
 //! `match` below, one row in the property tests (`tests/prop_eos.rs`).
 
-mod ideal_gas;
-mod linear;
-mod linear_gamma;
-mod logarithmic;
-mod mie_gruneisen;
+pub mod ideal_gas;
+pub mod linear;
+pub mod linear_gamma;
+pub mod logarithmic;
+pub mod mie_gruneisen;
 
 pub use ideal_gas::IdealGas;
 pub use linear::Linear;

@@ -1,6 +1,6 @@
 //! Exact plane waves ahead of a piston that pushes into a solid at rest.
 //!
-//! * [`principal`]: one shock into a strengthless solid, in closed form for each equation of state;
+//! * [`principal()`]: one shock into a strengthless solid, in closed form for each equation of state;
 //! * [`piston`]: with strength, one of four structures, see [`PistonWaves`];
 //! * [`elastic_limit`]: the Hugoniot elastic limit (HEL) and the precursor that carries it;
 //! * [`overdriven_threshold`]: from which piston velocity on the plastic wave swallows the precursor.
@@ -26,9 +26,9 @@
 //! Shocks as discontinuities, heat conduction and rate effects left out; elastic and plastic branch each convex
 //! in `V`, which holds for constant G and every equation of state here in compression. The thermodynamic
 //! limit of the Mie-Grüneisen model with strength is `ρ/ρ0 < 1 + 2/γ` (without strength the
-//! singular point is removable, and [`principal`] goes on to `s_a/(s_a - 1)`).
+//! singular point is removable, and [`principal()`] goes on to `s_a/(s_a - 1)`).
 
-mod principal;
+pub mod principal;
 
 pub use principal::principal;
 

@@ -45,7 +45,7 @@ enum Form {
     Crush(CrushCurve),
 }
 
-/// A compaction curve behind a precursor.
+/// A compaction curve behind a precursor; equations, validity and source: [its module](self).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompactionCurve {
     medium: PorousMedium,

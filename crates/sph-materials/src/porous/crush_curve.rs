@@ -17,7 +17,7 @@
 
 use crate::error::HugoniotError;
 
-/// A crush curve.
+/// A crush curve; formula and source: [its module](self).
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct CrushCurve {
     /// `P_e`: pressure at which compaction begins [Pa].

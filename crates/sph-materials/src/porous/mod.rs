@@ -60,8 +60,8 @@
 //! compaction: Ya. B. Zel'dovich & Yu. P. Raizer, Physics of Shock Waves and High-Temperature Hydrodynamic
 //! Phenomena, ch. XI.
 
-mod compaction_curve;
-mod crush_curve;
+pub mod compaction_curve;
+pub mod crush_curve;
 
 pub use compaction_curve::CompactionCurve;
 pub use crush_curve::CrushCurve;

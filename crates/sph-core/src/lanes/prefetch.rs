@@ -19,3 +19,18 @@ pub fn prefetch<T>(values: &[T], first: usize, count: usize) {
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (values, first, count, LINE);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_place_is_out_of_bounds() {
+        let values = vec![1.0_f64; 100];
+        for first in [0, 99, 100, 10_000_000, usize::MAX / 8] {
+            prefetch(&values, first, 100);
+        }
+        prefetch::<f64>(&[], 0, 1);
+        assert!(values.iter().all(|&v| v == 1.0), "nothing that a program can see has changed");
+    }
+}

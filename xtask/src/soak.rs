@@ -1,8 +1,8 @@
 //! `cargo xtask soak`: runs are killed at random moments, many times, and must end with the same bytes.
 //!
-//! It is the test `soak` of `sph-hugoniot` with more kills, in release: SIGKILL after a random time, states on disk cut or
-//! changed in between, another number of threads each time; at the end every file is held against those of a run that was
-//! left alone. `cargo test` runs the same with a few kills.
+//! It is the test `soak` of `sph-hugoniot` with more kills: SIGKILL after a random time, states on disk cut or changed in
+//! between, another number of threads each time; at the end every file is held against those of a run that was left
+//! alone. `cargo test` runs the same, in the same build, with a few kills.
 
 use std::process::ExitCode;
 
@@ -23,7 +23,7 @@ pub struct Arguments {
 /// Exit status: that of the test.
 pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let mut command = process::cargo();
-    command.args(["test", "--release", "--quiet", "--package", "sph-hugoniot", "--test", "soak"]);
+    command.args(["test", "--quiet", "--package", "sph-hugoniot", "--test", "soak"]);
     command.args(["--", "--nocapture"]).current_dir(process::root());
     command.env("SOAK_KILLS", arguments.kills.to_string()).env("SOAK_SEED", arguments.seed.to_string());
     process::run(&mut command)

@@ -49,6 +49,8 @@ pub struct Check {
     pub expected_seconds: f64,
     /// Expected memory [bytes].
     pub expected_bytes: f64,
+    /// Expected size of the folder of results, moments for ParaView at their limit [bytes].
+    pub expected_disk_bytes: f64,
 }
 
 impl Check {
@@ -59,6 +61,7 @@ impl Check {
         let names: Vec<String> = case.materials().into_iter().map(|m| m.name).collect();
         let features = measure::features(&case.medium);
         let (expected_seconds, expected_bytes) = estimate::total(&points, threads);
+        let expected_disk_bytes = estimate::disk(&points, threads);
         Self {
             porosity_reached: sample.porosity,
             bulk_density: sample.bulk_density(),
@@ -73,6 +76,7 @@ impl Check {
             threads,
             expected_seconds,
             expected_bytes,
+            expected_disk_bytes,
             case,
         }
     }
@@ -129,7 +133,7 @@ impl Check {
             );
         }
         let time = duration(self.expected_seconds);
-        let memory = significant((self.expected_bytes / 1e5).round() / 10.0);
+        let megabytes = |bytes: f64| significant((bytes / 1e5).round() / 10.0);
         if let Some(path) = &self.picture {
             _ = writeln!(out, "\npicture of the sample: {}", path.display());
         }
@@ -138,10 +142,14 @@ impl Check {
         }
         let on_disk: f64 = self.points.iter().map(|p| p.snapshot_bytes).sum();
         if on_disk > 0.0 {
-            let megabytes = significant((on_disk / 1e5).round() / 10.0);
-            _ = writeln!(out, "moments for ParaView: {megabytes} MB on disk at the most");
+            _ = writeln!(out, "moments for ParaView: {} MB on disk at the most", megabytes(on_disk));
         }
-        _ = writeln!(out, "\nabout {time} on {} core(s), {memory} MB; estimates", self.threads);
+        let (memory, disk) = (megabytes(self.expected_bytes), megabytes(self.expected_disk_bytes));
+        let threads = self.threads;
+        _ = writeln!(
+            out,
+            "\nabout {time} on {threads} core(s), {memory} MB of memory, {disk} MB on disk; estimates"
+        );
         out
     }
 

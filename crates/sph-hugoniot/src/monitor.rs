@@ -47,6 +47,8 @@ pub struct MonitorRow {
     pub limiting_relative_speed: f64,
     /// Bounds that acted since the start.
     pub interventions: Interventions,
+    /// Boosts of frame tracking that were bounded since the start.
+    pub boosts_bounded: u64,
 }
 
 /// The rows of a point, and the steps since the last of them.
@@ -105,6 +107,8 @@ pub struct Worst {
     pub time_step_least: f64,
     /// Bounds that acted, to the end.
     pub interventions: Interventions,
+    /// Boosts of frame tracking that were bounded.
+    pub boosts_bounded: u64,
 }
 
 impl Monitors {
@@ -162,6 +166,7 @@ impl Monitors {
             limiting_sound_speed: shortest.sound_speed,
             limiting_relative_speed: shortest.relative_speed,
             interventions: simulation.interventions(),
+            boosts_bounded: window.boosts_bounded(),
         }
     }
 
@@ -193,6 +198,7 @@ pub fn worst(rows: &[MonitorRow]) -> Option<Worst> {
         floored_share: largest(|r| r.floored_share),
         time_step_least: least(|r| r.time_step_least),
         interventions: last.interventions,
+        boosts_bounded: last.boosts_bounded,
     })
 }
 

@@ -291,3 +291,7 @@ fn constraint(code: u8) -> Result<Constraint> {
         .find(|&c| c as u8 == code)
         .with_context(|| format!("{code} is no constraint of a particle"))
 }
+
+#[cfg(test)]
+#[path = "restart_tests.rs"]
+mod tests;

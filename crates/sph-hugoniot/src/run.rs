@@ -99,6 +99,7 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     if let Some(refusal) = earlier::settle(&options.folder, case, options.earlier)? {
         return Ok(RunEnd::Refused(refusal));
     }
+    earlier::clear_leftovers(&options.folder)?;
     let data = match load_data(case) {
         Ok(data) => data,
         Err(error) => return Ok(RunEnd::Refused(error.to_string())),

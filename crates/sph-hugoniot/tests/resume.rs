@@ -26,6 +26,16 @@ fn finish(mut command: Command) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
+/// The states of a point, the oldest first; none if there is no such folder yet.
+fn states(point: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(point).into_iter().flatten();
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let mut states: Vec<PathBuf> =
+        paths.filter(|path| path.extension().is_some_and(|e| e == "ckpt")).collect();
+    states.sort();
+    states
+}
+
 #[test]
 fn earlier_results_are_not_overwritten_and_a_changed_case_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -58,25 +68,47 @@ fn earlier_results_are_not_overwritten_and_a_changed_case_is_refused() {
 fn a_damaged_state_is_told_and_the_one_before_it_taken() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("run");
-    let mut child = start(&smoke_case(), &out, &["--keep-every", "0"]);
-    std::thread::sleep(Duration::from_millis(400));
+    let mut child = start(&smoke_case(), &out, &["--up", "300", "--keep-every", "0"]);
+    while states(&out.join("points/up_0300")).len() < 2 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
     child.kill().expect("it can be killed");
     child.wait().expect("it ends");
-    let mut states: Vec<PathBuf> = std::fs::read_dir(out.join("points"))
-        .expect("points")
-        .flat_map(|point| std::fs::read_dir(point.expect("a point").path()).expect("its files"))
-        .map(|file| file.expect("a file").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "ckpt"))
-        .collect();
-    states.sort();
-    assert_eq!(states.len(), 2, "{states:?}");
-    let mut bytes = std::fs::read(&states[1]).expect("a state");
+    let newest = states(&out.join("points/up_0300")).pop().expect("a state");
+    let mut bytes = std::fs::read(&newest).expect("a state");
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
-    std::fs::write(&states[1], bytes).expect("a damaged state");
-    let mut command = hugoniot(&smoke_case(), &out, &["--resume"]);
+    std::fs::write(&newest, bytes).expect("a damaged state");
+    let mut command = hugoniot(&smoke_case(), &out, &["--up", "300", "--resume"]);
     command.env("RUST_LOG", "warn");
     let (code, said) = finish(command);
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("the state before it is taken"), "{said}");
+}
+
+/// What a killed process was just writing is cleared away at the next start, and nothing else.
+#[test]
+fn unfinished_files_of_a_killed_run_are_cleared_away() {
+    let folder = tempfile::tempdir().unwrap();
+    let (case, out) = (smoke_case(), folder.path().join("out"));
+    let mut child = start(&case, &out, &["--up", "300", "--keep-every", "0"]);
+    let point = out.join("points/up_0300");
+    while !point.exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let left = [out.join(".unfinished-Ab3x9q.tmp"), point.join(".unfinished-Ab3x9q.tmp")];
+    let own = out.join("points/my notes.tmp");
+    left.iter().chain([&own]).for_each(|path| std::fs::write(path, "x").unwrap());
+
+    let (code, _) = finish(hugoniot(&case, &out, &["--up", "300"]));
+    assert_eq!(code, Some(2), "a run that is refused");
+    assert!(left.iter().all(|path| path.exists()), "touches nothing");
+    let mut command = hugoniot(&case, &out, &["--up", "300", "--resume"]);
+    command.env("RUST_LOG", "debug");
+    let (code, said) = finish(command);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.matches("left unfinished by a process that was killed").count() >= 2, "{said}");
+    assert!(!left.iter().any(|path| path.exists()) && own.exists());
 }

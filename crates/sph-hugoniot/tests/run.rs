@@ -128,6 +128,61 @@ fn bad_input_runs_nothing() {
 }
 
 #[cfg(unix)]
+fn interrupt(child: &std::process::Child) {
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+}
+
+/// A run of the file `case.ron` in a folder, once its point is under way.
+#[cfg(unix)]
+fn under_way(folder: &Path) -> std::process::Child {
+    let mut command = hugoniot();
+    command.current_dir(folder).args(["run", "case.ron", "--up", "300", "--out", "out", "--quiet"]);
+    let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
+    while !folder.join("out/points/up_0300").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    child
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_goes_on_to_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("case.ron"), smoke()).unwrap();
+    let mut child = under_way(folder.path());
+    interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(folder.path().join("out/report.html").exists());
+    let resumed = hugoniot()
+        .current_dir(folder.path())
+        .args(["run", "case.ron", "--up", "300", "--out", "out", "--quiet", "--resume"])
+        .env("RUST_LOG", "info")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&resumed.stderr);
+    assert_eq!(resumed.status.code(), Some(0), "{said}");
+    let csv = std::fs::read_to_string(folder.path().join("out/hugoniot.csv")).unwrap();
+    assert!(csv.lines().last().unwrap().ends_with("settled"), "{csv}");
+}
+
+/// The second Ctrl-C does not wait for the report, which the first one does.
+#[cfg(unix)]
+#[test]
+fn a_second_interrupt_stops_at_once() {
+    use std::io::{BufRead, BufReader};
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("case.ron"), smoke()).unwrap();
+    let mut child = under_way(folder.path());
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines();
+    interrupt(&child);
+    assert!(said.any(|line| line.unwrap().contains("again to stop at once")));
+    interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(!folder.path().join("out/report.html").exists());
+}
+
+#[cfg(unix)]
 #[test]
 fn an_interrupt_keeps_what_was_computed() {
     let folder = tempfile::tempdir().unwrap();
@@ -145,7 +200,7 @@ fn an_interrupt_keeps_what_was_computed() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     std::thread::sleep(std::time::Duration::from_millis(300));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let csv = std::fs::read_to_string(folder.path().join("out/hugoniot.csv")).unwrap();
     assert!(csv.lines().last().unwrap().ends_with("interrupted"), "{csv}");

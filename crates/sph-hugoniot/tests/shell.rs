@@ -16,6 +16,18 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// Size of all files below a folder.
+fn bytes_below(folder: &Path) -> f64 {
+    let size = |entry: std::fs::DirEntry| {
+        if entry.path().is_dir() {
+            bytes_below(&entry.path())
+        } else {
+            entry.metadata().unwrap().len() as f64
+        }
+    };
+    std::fs::read_dir(folder).unwrap().map(|entry| size(entry.unwrap())).sum()
+}
+
 /// Few cells, and little to be measured: a run of about a second.
 fn quick_case() -> String {
     let smoke = sph_hugoniot::template::text("smoke").unwrap();
@@ -103,7 +115,10 @@ fn a_run_in_an_odd_place_tells_its_end_as_json_that_fits_the_schemas() {
     let words = text(&hugoniot(&place, &["status", out]).stdout);
     assert!(words.contains("done, 1 of 1 points ended") && words.contains("300"), "{words}");
     assert_fits(Schema::Table, &std::fs::read(place.join(out).join("hugoniot.json")).unwrap());
-    assert_fits(Schema::Check, &hugoniot(&place, &["check", "der Fall.ron", "--json"]).stdout);
+    let check = assert_fits(Schema::Check, &hugoniot(&place, &["check", "der Fall.ron", "--json"]).stdout);
+    let (foreseen, written) = (check["expected_disk_bytes"].as_f64().unwrap(), bytes_below(&place.join(out)));
+    // Two points are foreseen; one was run.
+    assert!((0.5..1.2).contains(&(written / foreseen)), "{written} bytes on disk, {foreseen} were foreseen");
     let page = std::fs::read_to_string(place.join(out).join("report.html")).unwrap();
     for part in
         ["Can I believe this?", "Shock Hugoniot: smoke", "id=\"up_0300\"", "'der Fall.ron'", "data:image/png"]

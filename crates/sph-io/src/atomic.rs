@@ -5,13 +5,19 @@
 //! never a part. The file's mode is 0644 less the process's umask (a plain temporary file would be 0600, unreadable
 //! to the colleagues who share the folder).
 //!
+//! A process that is killed leaves its neighbor of the target behind, under a name that nothing else has;
+//! [`remove_leftovers`] clears such files away.
+//!
 //! It does not create folders: a misspelled output folder is an error and no new folder.
 
 use crate::IoError;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
+
+/// What the names of unfinished files begin and end with.
+const UNFINISHED: (&str, &str) = (".unfinished-", ".tmp");
 
 /// Writes `contents` to `path`, atomically.
 ///
@@ -37,6 +43,30 @@ pub fn write_atomic_with(
     sync_folder(folder).map_err(IoError::file(folder, "flush the folder"))
 }
 
+/// Removes what killed processes left unfinished in a folder, not in the folders below it; returns the files' paths.
+///
+/// Nobody may be writing into the folder: see [`crate::lock`].
+///
+/// # Errors
+/// [`IoError::File`] if the folder cannot be listed or a file not be removed.
+pub fn remove_leftovers(folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, IoError> {
+    let folder = folder.as_ref();
+    let mut removed = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(IoError::file(folder, "list the folder"))? {
+        let path = entry.map_err(IoError::file(folder, "list the folder"))?.path();
+        if is_unfinished(&path) {
+            std::fs::remove_file(&path).map_err(IoError::file(&path, "remove"))?;
+            removed.push(path);
+        }
+    }
+    Ok(removed)
+}
+
+fn is_unfinished(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    name.starts_with(UNFINISHED.0) && name.ends_with(UNFINISHED.1)
+}
+
 /// The folder that holds `path`; `.` for a bare name.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
@@ -47,7 +77,7 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 
 fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(".tmp");
+    builder.prefix(UNFINISHED.0).suffix(UNFINISHED.1);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -101,6 +131,18 @@ mod tests {
         assert!(result.unwrap_err().to_string().contains("the power went"));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(entries(folder.path()), 1);
+    }
+
+    #[test]
+    fn leftovers_go_and_everything_else_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let (_, left) = temporary_in(folder.path()).unwrap().keep().unwrap();
+        for name in ["a.txt", ".lock", ".a.tmp", "unfinished-a.tmp"] {
+            fs::write(folder.path().join(name), b"x").unwrap();
+        }
+        assert_eq!(remove_leftovers(folder.path()).unwrap(), [left]);
+        assert_eq!(entries(folder.path()), 4);
+        assert!(remove_leftovers(folder.path()).unwrap().is_empty());
     }
 
     #[test]

@@ -62,6 +62,8 @@ pub struct Progress {
     pub exchanged: f64,
     /// Swept length from which on the start-up material has left, once known [m].
     pub settled_from: Option<f64>,
+    /// Boosts that were bounded, so that the outlet would not move to the right and bring matter back in.
+    pub boosts_bounded: u64,
     /// The last look at the front.
     pub observation: Option<Observation>,
 }
@@ -82,6 +84,7 @@ impl Progress {
             drift: 0.0,
             exchanged: 0.0,
             settled_from: None,
+            boosts_bounded: 0,
             observation: None,
         }
     }

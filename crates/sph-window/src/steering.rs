@@ -25,7 +25,9 @@ impl<D: SolidDimension> Window<D> {
         let had_arrived = self.progress.tracker.arrived();
         let wanted = self.progress.tracker.observe(now, &target, tracking)?;
         // An outlet that moves to the right would bring matter back in.
-        let velocity = wanted.min(self.progress.frame.outlet_velocity());
+        let most = self.progress.frame.outlet_velocity();
+        self.progress.boosts_bounded += u64::from(wanted > most);
+        let velocity = wanted.min(most);
         self.boost(velocity);
         if !had_arrived {
             self.progress.settled_from = Some(self.startup_left_at(now));
@@ -136,5 +138,39 @@ impl<D: SolidDimension> Window<D> {
     pub fn with_snapshot(mut self, snapshot: Option<Snapshot<D>>) -> Self {
         self.snapshot = snapshot;
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::WindowSettings;
+    use crate::testing::lattice;
+    use sph_core::Dim2;
+    use sph_materials::library;
+    use sph_riemann::{Scheme, Settings};
+
+    /// A front that is brought to its place at some speed [m/s], in a window whose outlet rests until then.
+    fn arrival(speed: f64) -> Window<Dim2> {
+        let copper = library::material("porous-copper").expect("the library has it");
+        let solver = Settings::for_scheme(Scheme::TkcHancock);
+        let settings = WindowSettings::new(1e-4, 300.0);
+        let mut window =
+            Window::new(lattice(1e-6, [8, 8, 1]), vec![copper], solver, settings).expect("a window");
+        let place = window.settings.wanted_front();
+        for (time, front) in [(0.0, 0.0), (place / speed, place)] {
+            window.track(&Observation { time, front, swept: front }, &FrameTracking::default());
+        }
+        window
+    }
+
+    #[test]
+    fn a_boost_that_would_push_the_outlet_in_is_bounded_and_counted() {
+        let slow = arrival(50.0);
+        assert_eq!((slow.boosts_bounded(), slow.frame().outlet_velocity()), (1, 0.0));
+        assert_eq!(slow.save().progress.boosts_bounded, 1);
+        let fast = arrival(4000.0);
+        assert_eq!(fast.boosts_bounded(), 0);
+        assert!((fast.frame().outlet_velocity() - 3700.0).abs() < 1e-6);
     }
 }

@@ -156,6 +156,11 @@ impl<D: SolidDimension> Window<D> {
         &self.progress.ledger
     }
 
+    /// Boosts of frame tracking that were bounded since the start, so that the outlet would not bring matter back in.
+    pub fn boosts_bounded(&self) -> u64 {
+        self.progress.boosts_bounded
+    }
+
     /// Bounds of the regions.
     pub fn regions(&self) -> &Regions {
         &self.regions

@@ -31,7 +31,7 @@ pub(super) fn check() -> anyhow::Result<Finding> {
     let packages = metadata["packages"].as_array().context("metadata has no packages")?;
     let faults: Vec<String> = packages.iter().filter_map(fault).collect();
     let said = format!("licenses of {} packages against {}", packages.len(), PERMISSIVE.join(", "));
-    Ok(Finding { name: "licenses", faults, said })
+    Ok(Finding::of("licenses", said, faults))
 }
 
 /// What is wrong with the license of a package.

@@ -4,7 +4,8 @@
 //! * each public crate can be packed, and holds what it should ([`packages`]);
 //! * with `--full`: the packed crates build by themselves (`cargo publish --dry-run`), the oldest versions that the
 //!   manifests allow build, public interfaces are compared with those of an earlier commit, and known advisories are
-//!   looked up. Where a step needs a tool that is not installed, this is told with the command that installs it.
+//!   looked up. A step that could not be made, for want of a tool or of the advisory database, is told with what helps,
+//!   and does not count as passed.
 
 mod licenses;
 mod packages;
@@ -19,7 +20,7 @@ pub struct Arguments {
     /// Also what takes minutes or a further tool: dry run of publishing, oldest dependencies, interfaces, advisories.
     #[arg(long)]
     full: bool,
-    /// Commit or tag whose public interfaces today's are compared with.
+    /// Commit or tag whose public interfaces today's are compared with; the latest tag by itself.
     #[arg(long, value_name = "REVISION", requires = "full")]
     baseline: Option<String>,
 }
@@ -30,6 +31,8 @@ pub struct Finding {
     name: &'static str,
     /// Faults; none if it is well.
     faults: Vec<String>,
+    /// What kept the step from being made, and what helps.
+    not_made: Option<String>,
     /// What was done, or why it was not.
     said: String,
 }
@@ -44,10 +47,33 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         findings.push(releases::advisories()?);
     }
     for finding in &findings {
-        let verdict = if finding.faults.is_empty() { "well" } else { "NOT WELL" };
-        println!("{:<22} {verdict:<9} {}", finding.name, finding.said);
+        println!("{:<22} {:<9} {}", finding.name, finding.verdict(), finding.said);
         finding.faults.iter().for_each(|fault| eprintln!("error: {}: {fault}", finding.name));
+        finding.not_made.iter().for_each(|why| eprintln!("not made: {}: {why}", finding.name));
     }
-    let well = findings.iter().all(|finding| finding.faults.is_empty());
+    let well = findings.iter().all(Finding::is_well);
     Ok(if well { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+impl Finding {
+    fn of(name: &'static str, said: String, faults: Vec<String>) -> Self {
+        Self { name, faults, not_made: None, said }
+    }
+
+    /// A step that was not made is not passed.
+    fn not_made(name: &'static str, said: String, why: String) -> Self {
+        Self { name, faults: Vec::new(), not_made: Some(why), said }
+    }
+
+    fn is_well(&self) -> bool {
+        self.faults.is_empty() && self.not_made.is_none()
+    }
+
+    fn verdict(&self) -> &'static str {
+        match (self.faults.is_empty(), &self.not_made) {
+            (false, _) => "NOT WELL",
+            (true, Some(_)) => "NOT MADE",
+            (true, None) => "well",
+        }
+    }
 }

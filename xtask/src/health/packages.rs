@@ -7,7 +7,7 @@ use super::Finding;
 use crate::process;
 
 /// Files that each crate shows to its first reader.
-const EXPECTED: [&str; 3] = ["Cargo.toml", "README.md", "src/lib.rs"];
+const EXPECTED: [&str; 5] = ["Cargo.toml", "README.md", "LICENSE-APACHE", "LICENSE-MIT", "src/lib.rs"];
 /// A crate with more than this is a burden to everybody who depends on it [bytes].
 const MOST_BYTES: u64 = 2_000_000;
 
@@ -41,7 +41,7 @@ pub(super) fn check() -> anyhow::Result<Finding> {
         }
         faults.extend(outside(name, &folder, &listed)?);
     }
-    Ok(Finding { name: "packages", faults, said: format!("contents of {}", crates.join(", ")) })
+    Ok(Finding::of("packages", format!("contents of {}", crates.join(", ")), faults))
 }
 
 /// Files that the crate would be published with.

@@ -1,7 +1,7 @@
 //! The long steps before a release.
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, ExitStatus};
 
 use anyhow::Context;
 
@@ -32,23 +32,38 @@ pub(super) fn oldest_dependencies() -> anyhow::Result<Finding> {
     step(name, &mut check)
 }
 
-/// Compares the public interfaces with those of an earlier commit.
+/// Compares the public interfaces with those of an earlier commit: the one that is named, or else the latest tag.
 pub(super) fn interfaces(baseline: Option<&str>) -> anyhow::Result<Finding> {
     let name = "public interfaces";
-    let Some(baseline) = baseline else {
-        let said = "not compared: name a commit or tag with --baseline".to_owned();
-        return Ok(Finding { name, faults: Vec::new(), said });
+    let Some(baseline) = baseline.map(str::to_owned).or_else(latest_tag) else {
+        // A first release can break nobody's code.
+        return Ok(Finding::of(
+            name,
+            "no earlier release: there is no tag, and no --baseline".to_owned(),
+            vec![],
+        ));
     };
     if !is_installed("semver-checks") {
         return Ok(missing(name, "cargo-semver-checks"));
     }
     let mut command = process::cargo();
-    command.args(["semver-checks", "--baseline-rev", baseline]).current_dir(process::root());
+    command.args(["semver-checks", "--baseline-rev", &baseline]).current_dir(process::root());
     for public in packages::public_crates()? {
         command.args(["--package", &public]);
     }
     step(name, &mut command)
 }
+
+fn latest_tag() -> Option<String> {
+    let mut command = Command::new("git");
+    let output =
+        command.args(["describe", "--tags", "--abbrev=0"]).current_dir(process::root()).output().ok()?;
+    let tag = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (output.status.success() && !tag.is_empty()).then_some(tag)
+}
+
+/// What cargo-audit says where it has no database to look into.
+const NO_DATABASE: &str = "couldn't fetch advisory database";
 
 /// Looks known advisories up.
 pub(super) fn advisories() -> anyhow::Result<Finding> {
@@ -56,23 +71,37 @@ pub(super) fn advisories() -> anyhow::Result<Finding> {
     if !is_installed("audit") {
         return Ok(missing(name, "cargo-audit"));
     }
-    step(name, process::cargo().arg("audit").current_dir(process::root()))
+    let mut command = process::cargo();
+    let output = command.args(["audit", "--color", "never"]).current_dir(process::root()).output()?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    print!("{}", String::from_utf8_lossy(&output.stdout));
+    eprint!("{said}");
+    if said.contains(NO_DATABASE) {
+        let why = "the advisory database is out of reach; hint: with a network, or a clone of \
+                   https://github.com/RustSec/advisory-db in ~/.cargo/advisory-db";
+        return Ok(Finding::not_made(name, "cargo audit".to_owned(), why.to_owned()));
+    }
+    Ok(Finding::of(name, "cargo audit".to_owned(), fault("cargo audit", output.status)))
 }
 
 fn is_installed(subcommand: &str) -> bool {
     process::cargo().args([subcommand, "--version"]).output().is_ok_and(|output| output.status.success())
 }
 
-/// A step that was not made is told, and is no fault: not every machine has every tool.
 fn missing(name: &'static str, tool: &str) -> Finding {
-    Finding { name, faults: Vec::new(), said: format!("not looked at: cargo install --locked {tool}") }
+    let why = format!("{tool} is not installed; hint: cargo install --locked {tool}");
+    Finding::not_made(name, tool.to_owned(), why)
 }
 
 fn step(name: &'static str, command: &mut Command) -> anyhow::Result<Finding> {
     let typed = format!("{command:?}").replace('"', "");
     let status = command.status().with_context(|| format!("cannot start {typed}"))?;
-    let faults = if status.success() { Vec::new() } else { vec![format!("{typed} failed: {status}")] };
-    Ok(Finding { name, faults, said: typed })
+    let faults = fault(&typed, status);
+    Ok(Finding::of(name, typed, faults))
+}
+
+fn fault(typed: &str, status: ExitStatus) -> Vec<String> {
+    if status.success() { Vec::new() } else { vec![format!("{typed} failed: {status}")] }
 }
 
 /// Copies the files that git tracks; what they have changed since the last commit comes along.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use serde_json::Value;
+use sph_io::atomic;
 
 use crate::config::Case;
 use crate::report::machine;
@@ -13,7 +14,7 @@ use crate::run::Earlier;
 ///
 /// Whoever changes what these hold (`PointOutcome`, `PointProgress`, `WindowState`, `Case`) raises it: a run then refuses to
 /// go on with a folder of another version, in place of reading one thing as another.
-pub const FOLDER_FORMAT: u64 = 1;
+pub const FOLDER_FORMAT: u64 = 2;
 
 /// The resolved case as a folder keeps it, with the version of its form and of the program.
 ///
@@ -86,6 +87,35 @@ pub fn settle(folder: &Path, case: &Case, earlier: Earlier) -> Result<Option<Str
             }))
         }
     }
+}
+
+/// Removes what a killed process was just writing into the folder; other files of the user's stay.
+///
+/// # Errors
+/// If a folder cannot be listed, or a file not be removed.
+pub fn clear_leftovers(folder: &Path) -> Result<()> {
+    clear(folder)?;
+    let points = folder.join("points");
+    if points.is_dir() { clear_below(&points) } else { Ok(()) }
+}
+
+fn clear(folder: &Path) -> Result<()> {
+    for path in atomic::remove_leftovers(folder)? {
+        tracing::debug!("{}: left unfinished by a process that was killed; removed", path.display());
+    }
+    Ok(())
+}
+
+fn clear_below(folder: &Path) -> Result<()> {
+    clear(folder)?;
+    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let entry = entry?;
+        // A link to a folder is none: what lies elsewhere is not the run's.
+        if entry.file_type()?.is_dir() {
+            clear_below(&entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 /// What differs, one line each: `field: before -> now`.

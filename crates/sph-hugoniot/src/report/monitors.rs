@@ -74,16 +74,31 @@ const COUNTS: [Count; 3] = [
     ("failures", "times that a particle failed in tension", |i| i.failures),
 ];
 
+/// What is counted of the frame.
+const BOOSTS: &str = "boosts of the frame that were bounded: the outlet would have moved into the box";
+
+fn bounded_boosts(worst: Option<Worst>) -> i64 {
+    worst.map_or(0, |w| w.boosts_bounded as i64)
+}
+
 /// What was watched of a point, a row for each cell that the front swept.
 pub fn table(outcome: &PointOutcome) -> Table {
     let title =
         format!("Monitors at u_p = {} m/s, cell by cell of the front's way", outcome.particle_velocity);
     let rows: Vec<&MonitorRow> = outcome.monitors.iter().collect();
     let table = add(Table::new(title), &ROW, &rows);
-    COUNTS.iter().fold(table, |table, (name, text, value)| {
-        let counts: Vec<i64> = rows.iter().map(|r| value(&r.interventions) as i64).collect();
-        table.with(Column::integer(name, "", &format!("{text}, since the start"), counts))
-    })
+    COUNTS
+        .iter()
+        .fold(table, |table, (name, text, value)| {
+            let counts: Vec<i64> = rows.iter().map(|r| value(&r.interventions) as i64).collect();
+            table.with(Column::integer(name, "", &format!("{text}, since the start"), counts))
+        })
+        .with(Column::integer(
+            "boosts_bounded",
+            "",
+            &format!("{BOOSTS}, since the start"),
+            rows.iter().map(|r| r.boosts_bounded as i64).collect::<Vec<i64>>(),
+        ))
 }
 
 /// The table with the worst of each point at its right.
@@ -93,11 +108,19 @@ pub fn with_worst(table: Table, outcomes: &[&PointOutcome]) -> Table {
         let values: Vec<f64> = worst.iter().map(|w| w.as_ref().map_or(f64::NAN, value)).collect();
         table.with(Column::float(name, unit, text, values))
     });
-    COUNTS.iter().fold(table, |table, (name, text, value)| {
-        let counts: Vec<i64> =
-            worst.iter().map(|w| w.map_or(0, |w| value(&w.interventions)) as i64).collect();
-        table.with(Column::integer(name, "", text, counts))
-    })
+    COUNTS
+        .iter()
+        .fold(table, |table, (name, text, value)| {
+            let counts: Vec<i64> =
+                worst.iter().map(|w| w.map_or(0, |w| value(&w.interventions)) as i64).collect();
+            table.with(Column::integer(name, "", text, counts))
+        })
+        .with(Column::integer(
+            "boosts_bounded",
+            "",
+            BOOSTS,
+            worst.iter().map(|w| bounded_boosts(*w)).collect::<Vec<i64>>(),
+        ))
 }
 
 /// What bounded a value on the way, one line each; nothing acts in silence.
@@ -109,6 +132,10 @@ pub fn interventions(outcomes: &[&PointOutcome]) -> Vec<String> {
         (count > 0).then(|| format!("{name}: {count} ({share:.2e} % of all particle-steps): {text}"))
     };
     let mut lines: Vec<String> = COUNTS.iter().filter_map(line).collect();
+    let boosts: i64 = outcomes.iter().map(|o| bounded_boosts(o.worst())).sum();
+    if boosts > 0 {
+        lines.push(format!("boosts_bounded: {boosts}: {BOOSTS}"));
+    }
     let floored = outcomes.iter().filter_map(|o| o.worst()).map(|w| w.floored_share).fold(0.0, f64::max);
     if floored > 0.0 {
         lines.push(format!(

@@ -10,8 +10,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Files and folders, seen from this package.
-const SOURCES: [&str; 15] = [
+/// Files and folders, seen from this package; those that are there. In a published package the siblings are not: then the
+/// lock file beside the manifest names their versions.
+const SOURCES: [&str; 16] = [
     "../sph-core/Cargo.toml",
     "../sph-core/src",
     "../sph-materials/Cargo.toml",
@@ -27,6 +28,7 @@ const SOURCES: [&str; 15] = [
     "src/run.rs",
     "src/suites",
     "../../Cargo.lock",
+    "Cargo.lock",
 ];
 
 /// What cargo says of the build.
@@ -35,7 +37,7 @@ const SETTINGS: [&str; 6] =
 
 fn main() -> io::Result<()> {
     let mut hasher = DefaultHasher::new();
-    for source in SOURCES {
+    for source in SOURCES.into_iter().filter(|source| Path::new(source).exists()) {
         println!("cargo::rerun-if-changed={source}");
         for file in files(Path::new(source))? {
             file.to_string_lossy().hash(&mut hasher);

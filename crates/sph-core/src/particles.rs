@@ -6,6 +6,8 @@
 //!
 //! Units are SI; stress is positive in tension.
 
+use rayon::prelude::*;
+
 use crate::dimension::{Components, Dimension};
 
 /// What is imposed on a particle.
@@ -263,9 +265,7 @@ impl<D: Dimension> Particles<D> {
         pick(&mut self.material, order);
         pick(&mut self.constraint, order);
         pick(&mut self.failed, order);
-        for column in self.columns_mut() {
-            pick(column, order);
-        }
+        self.columns_mut().into_par_iter().for_each(|column| pick(column, order));
     }
 }
 

@@ -3,9 +3,11 @@
 /// Bytes of a cache line.
 const LINE: usize = 64;
 
-/// Asks for the lines that would hold `count` values from number `first` on, so that they are in the second cache when they
-/// are read or written. (The first one is too small for what lies some hundred particles ahead.) The numbers may lie beyond the end of `values`: whatever stands there in memory is then asked for, or nothing.
-/// Elsewhere than on x86-64 nothing is done.
+/// Asks for the lines that would hold `count` values from number `first` on, so that they are in the second cache when
+/// they are read or written. (The first cache is too small for what lies some hundred particles ahead.)
+///
+/// The numbers may lie beyond the end of `values`: whatever stands there in memory is then asked for, or nothing. Elsewhere
+/// than on x86-64 nothing is done.
 #[inline(always)]
 pub fn prefetch<T>(values: &[T], first: usize, count: usize) {
     #[cfg(target_arch = "x86_64")]

@@ -1,5 +1,7 @@
 //! Cells: the order of particles in memory, and the search for neighbors.
 
+use rayon::prelude::*;
+
 use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
 use crate::particles::Particles;
@@ -111,8 +113,8 @@ pub fn sort_particles<D: Dimension>(particles: &mut Particles<D>, domain: &Domai
     }
     let columns: Vec<&[f64]> = particles.position.as_ref().iter().map(Vec::as_slice).collect();
     let grid = CellGrid::<D>::around(&columns, width);
-    let keys: Vec<u32> =
-        (0..particles.len()).map(|i| grid.strip_rank(grid.coordinates(|a| columns[a][i])) as u32).collect();
+    let key = |i: usize| grid.strip_rank(grid.coordinates(|a| columns[a][i])) as u32;
+    let keys: Vec<u32> = (0..particles.len()).into_par_iter().map(key).collect();
     let (order, _) = counting_sort(&keys, grid.strip_ranks());
     if order.iter().enumerate().any(|(k, &i)| k as u32 != i) {
         particles.gather(&order);
@@ -136,10 +138,10 @@ impl<D: Dimension> CellSortedPoints<D> {
     pub fn new(position: &D::AxisColumns, width: f64) -> Self {
         let columns: Vec<&[f64]> = position.as_ref().iter().map(Vec::as_slice).collect();
         let grid = CellGrid::<D>::around(&columns, width);
-        let keys: Vec<u32> =
-            (0..columns[0].len()).map(|i| grid.number(grid.coordinates(|a| columns[a][i])) as u32).collect();
+        let key = |i: usize| grid.number(grid.coordinates(|a| columns[a][i])) as u32;
+        let keys: Vec<u32> = (0..columns[0].len()).into_par_iter().map(key).collect();
         let (index, start) = counting_sort(&keys, grid.len());
-        let sorted = Components::from_fn(|a| index.iter().map(|&i| columns[a][i as usize]).collect());
+        let sorted = Components::from_fn(|a| index.par_iter().map(|&i| columns[a][i as usize]).collect());
         Self { grid, start, index, position: sorted }
     }
 

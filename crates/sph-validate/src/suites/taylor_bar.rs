@@ -166,7 +166,7 @@ impl Suite for TaylorBar {
                 drawing: Drawing::Plot(figure),
             });
         }
-        let side = ((-1.0, 47.0), (-10.0, 10.0));
+        let side = ((-1.0, 47.0), (-15.0, 15.0));
         pictures.extend(plots::fields("taylor-bar", outcomes, |f| plots::field_image(f, side.0, side.1)));
         Ok(pictures)
     }

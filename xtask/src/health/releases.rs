@@ -111,7 +111,43 @@ fn copy_tracked(to: &Path) -> anyhow::Result<()> {
         let target = to.join(file);
         let folder = target.parent().context("a file has a folder")?;
         std::fs::create_dir_all(folder)?;
-        std::fs::copy(process::root().join(file), &target).with_context(|| file.to_owned())?;
+        let source = process::root().join(file);
+        if source.is_symlink() && source.is_dir() {
+            link(&std::fs::read_link(&source)?, &target).with_context(|| file.to_owned())?;
+        } else {
+            std::fs::copy(source, &target).with_context(|| file.to_owned())?;
+        }
     }
     Ok(())
+}
+
+/// A link to a folder; one of an earlier copy is replaced.
+#[cfg(unix)]
+fn link(to: &Path, at: &Path) -> std::io::Result<()> {
+    if at.is_symlink() {
+        std::fs::remove_file(at)?;
+    }
+    std::os::unix::fs::symlink(to, at)
+}
+
+#[cfg(not(unix))]
+fn link(to: &Path, _: &Path) -> std::io::Result<()> {
+    Err(std::io::Error::other(format!("a link to the folder {} is only copied on Unix", to.display())))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    /// The project has links to folders: a copy without them would not build.
+    #[test]
+    fn a_copy_has_the_links_of_the_project_and_can_be_made_twice() {
+        let copy = std::env::temp_dir().join(format!("xtask-copy-{}", std::process::id()));
+        for _ in 0..2 {
+            copy_tracked(&copy).expect("a copy");
+        }
+        let gates = copy.join("crates/sph-validate/validation/riemann/gates.ron");
+        assert!(gates.is_file() && copy.join("crates/sph-validate/validation").is_symlink());
+        std::fs::remove_dir_all(copy).expect("its removal");
+    }
 }

@@ -37,7 +37,7 @@ pub fn page(report: &Report, ended: &[Ended<'_>]) -> Result<Page, ValidateError>
 /// The verdict over everything, in a sentence.
 fn answer(report: &Report) -> (Verdict, String) {
     let failed = report.runs.iter().filter(|run| run.failure.is_some()).count();
-    let words = format!("{} in {} runs", report.tally(), report.runs.len());
+    let words = format!("{} runs: {}", report.runs.len(), report.tally());
     match (failed, verdict(report.rows.iter())) {
         (0, Verdict::Unknown) => (Verdict::Unknown, format!("{words}: nothing is judged here")),
         (0, verdict) => (verdict, words),

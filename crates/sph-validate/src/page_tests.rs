@@ -39,7 +39,7 @@ fn html(ended: &[Ended<'_>]) -> String {
 #[test]
 fn page_says_what_passed_and_what_was_missed() {
     let good = html(&[ended(|case| Ok(outcome(case, 0.04)))]);
-    assert!(good.contains("4 of 4 gates passed in 1 runs"), "the verdict");
+    assert!(good.contains("1 runs: 4 of 4 gates passed"), "the verdict");
     assert!(
         good.contains("data:image/svg+xml") && good.contains("Elastic-plastic Riemann problem"),
         "plots and title"

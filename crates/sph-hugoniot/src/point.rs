@@ -78,8 +78,10 @@ pub fn run_kept(
     control: &dyn Control,
     mut keeper: Option<Keeper>,
 ) -> Result<PointOutcome> {
-    if let Some(outcome) = keeper.as_ref().map(Keeper::outcome).transpose()?.flatten() {
-        return Ok(outcome);
+    if let Some((keeper, outcome)) = keeper.as_ref().and_then(|k| k.outcome().transpose().map(|o| (k, o))) {
+        // A process that was killed between the two has left states behind.
+        keeper.forget_states()?;
+        return outcome;
     }
     let started = Instant::now();
     let kept = keeper.as_ref().map(|k| k.load(case, sample, particle_velocity)).transpose()?.flatten();

@@ -96,7 +96,11 @@ impl Keeper {
         self.forget_states()
     }
 
-    fn forget_states(&self) -> Result<()> {
+    /// Removes the states on the way to an outcome.
+    ///
+    /// # Errors
+    /// If one cannot be removed.
+    pub fn forget_states(&self) -> Result<()> {
         for entry in std::fs::read_dir(&self.folder)? {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -89,12 +89,9 @@ impl RunEnd {
 pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
     let (started, began) = (Instant::now(), SystemTime::now());
     let sample = microstructure::sample(case);
-    std::fs::create_dir_all(&options.folder)
-        .with_context(|| format!("{}: the folder cannot be made", options.folder.display()))?;
-    let _lock = match FolderLock::acquire(&options.folder) {
+    let _lock = match hold(&options.folder)? {
         Ok(lock) => lock,
-        Err(error @ IoError::Locked { .. }) => return Ok(RunEnd::Refused(error.to_string())),
-        Err(error) => return Err(error.into()),
+        Err(refused) => return Ok(refused),
     };
     if let Some(refusal) = earlier::settle(&options.folder, case, options.earlier)? {
         return Ok(RunEnd::Refused(refusal));
@@ -127,6 +124,20 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         print_summary(&curves, &finished, report.folder(), seconds);
     }
     Ok(end)
+}
+
+/// Makes the folder and holds it for this process; how the run ends if another is at work there.
+///
+/// # Errors
+/// If the folder cannot be made or locked.
+pub(crate) fn hold(folder: &Path) -> Result<Result<FolderLock, RunEnd>> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+    match FolderLock::acquire(folder) {
+        Ok(lock) => Ok(Ok(lock)),
+        Err(error @ IoError::Locked { .. }) => Ok(Err(RunEnd::Refused(error.to_string()))),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// Round after round until no further point is asked for; all outcomes, in the order of u_p.

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
+use sph_io::lock::FolderLock;
+
 fn smoke_case() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/smoke.ron")
 }
@@ -36,19 +38,35 @@ fn states(point: &Path) -> Vec<PathBuf> {
     states
 }
 
+/// Waits until something is there that a run writes. A run that ends before has failed.
+fn wait_for(child: &mut Child, there: impl Fn() -> bool) {
+    while !there() {
+        assert!(child.try_wait().expect("a process").is_none() || there(), "the run has ended");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn kill(mut child: Child) {
+    child.kill().expect("it can be killed");
+    child.wait().expect("it ends");
+}
+
+#[test]
+fn a_folder_in_use_is_refused_and_told_by_whom() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let _lock = FolderLock::acquire(folder.path()).expect("nobody holds it");
+    let (code, said) = finish(hugoniot(&smoke_case(), folder.path(), &["--resume"]));
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains(&format!("in use by process {} (waited ", std::process::id())), "{said}");
+}
+
 #[test]
 fn earlier_results_are_not_overwritten_and_a_changed_case_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("run");
     let mut child = start(&smoke_case(), &out, &["--keep-every", "0"]);
-    std::thread::sleep(Duration::from_millis(300));
-    let (code, said) = finish(hugoniot(&smoke_case(), &out, &["--resume"]));
-    if child.try_wait().expect("a process").is_none() {
-        assert_eq!(code, Some(2), "{said}");
-        assert!(said.contains("process"), "who holds the folder: {said}");
-    }
-    child.kill().expect("it can be killed");
-    child.wait().expect("it ends");
+    wait_for(&mut child, || out.join("case.json").exists());
+    kill(child);
 
     let (code, said) = finish(hugoniot(&smoke_case(), &out, &[]));
     assert_eq!(code, Some(2));
@@ -69,11 +87,8 @@ fn a_damaged_state_is_told_and_the_one_before_it_taken() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("run");
     let mut child = start(&smoke_case(), &out, &["--up", "300", "--keep-every", "0"]);
-    while states(&out.join("points/up_0300")).len() < 2 {
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    child.kill().expect("it can be killed");
-    child.wait().expect("it ends");
+    wait_for(&mut child, || states(&out.join("points/up_0300")).len() >= 2);
+    kill(child);
     let newest = states(&out.join("points/up_0300")).pop().expect("a state");
     let mut bytes = std::fs::read(&newest).expect("a state");
     let middle = bytes.len() / 2;
@@ -86,21 +101,34 @@ fn a_damaged_state_is_told_and_the_one_before_it_taken() {
     assert!(said.contains("the state before it is taken"), "{said}");
 }
 
-/// What a killed process was just writing is cleared away at the next start, and nothing else.
+/// Folders below a place, and the place itself.
+fn folders(place: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(place).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let below: Vec<PathBuf> = entries.filter(|path| path.is_dir()).collect();
+    [place.to_owned()].into_iter().chain(below.iter().flat_map(|folder| folders(folder))).collect()
+}
+
+/// What a killed process was just writing is cleared away at the next start, in every folder that a run makes, and nothing
+/// else is.
 #[test]
 fn unfinished_files_of_a_killed_run_are_cleared_away() {
     let folder = tempfile::tempdir().unwrap();
-    let (case, out) = (smoke_case(), folder.path().join("out"));
-    let mut child = start(&case, &out, &["--up", "300", "--keep-every", "0"]);
-    let point = out.join("points/up_0300");
-    while !point.exists() {
-        std::thread::sleep(Duration::from_millis(10));
+    let (case, out) = (folder.path().join("case.ron"), folder.path().join("out"));
+    let text = std::fs::read_to_string(smoke_case()).unwrap();
+    let series = "output: (snapshots: Every(cells: 4), ";
+    assert!(text.contains("output: ("));
+    std::fs::write(&case, text.replace("output: (", series)).unwrap();
+    let (code, said) = finish(hugoniot(&case, &out, &["--up", "300"]));
+    assert_eq!(code, Some(0), "{said}");
+    let found = folders(&out);
+    for part in ["plots", "curve", "points", "points/up_0300", "points/up_0300/snapshots"] {
+        assert!(found.contains(&out.join(part)), "{part}: {found:?}");
     }
-    child.kill().unwrap();
-    child.wait().unwrap();
-    let left = [out.join(".unfinished-Ab3x9q.tmp"), point.join(".unfinished-Ab3x9q.tmp")];
+    let left: Vec<PathBuf> = found.iter().map(|folder| folder.join(".unfinished-Ab3x9q.tmp")).collect();
     let own = out.join("points/my notes.tmp");
-    left.iter().chain([&own]).for_each(|path| std::fs::write(path, "x").unwrap());
+    // As after a kill between the outcome and the end of the states on the way to it.
+    let state = out.join("points/up_0300/state-0000000007.ckpt");
+    left.iter().chain([&own, &state]).for_each(|path| std::fs::write(path, "x").unwrap());
 
     let (code, _) = finish(hugoniot(&case, &out, &["--up", "300"]));
     assert_eq!(code, Some(2), "a run that is refused");
@@ -109,6 +137,7 @@ fn unfinished_files_of_a_killed_run_are_cleared_away() {
     command.env("RUST_LOG", "debug");
     let (code, said) = finish(command);
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.matches("left unfinished by a process that was killed").count() >= 2, "{said}");
-    assert!(!left.iter().any(|path| path.exists()) && own.exists());
+    let told = said.matches("left unfinished by a process that was killed").count();
+    assert_eq!(told, left.len(), "{said}");
+    assert!(!left.iter().any(|path| path.exists()) && own.exists() && !state.exists());
 }

@@ -40,12 +40,16 @@ fn a_study_runs_each_particle_size_and_extrapolates() {
     assert!(value("uncertainty") >= value("order_spread"));
     assert!(out.join("plots/resolution.png").metadata().unwrap().len() > 1000);
 
-    // Nothing is lost by accident, and a study that goes on computes nothing again.
+    // Nothing is lost by accident, and a study that goes on computes nothing again; what a killed one was just writing goes.
+    let left = ["", "plots", "D_2um/plots", "D_2.5um/points/up_0300"]
+        .map(|part| out.join(part).join(".unfinished-Ab3x9q.tmp"));
+    left.iter().for_each(|path| std::fs::write(path, "half").unwrap());
     let (code, said) = study(folder.path(), &sizes);
     assert!(code == Some(2) && said.contains("--resume"), "{said}");
     let more = [&sizes[..], &["--resume"]].concat();
     assert_eq!(study(folder.path(), &more), (Some(0), String::new()));
     assert_eq!(first, (outcome("D_2.5um"), outcome("D_2um")));
+    assert!(!left.iter().any(|path| path.exists()));
 }
 
 #[test]

@@ -11,7 +11,7 @@
 //! It does not create folders: a misspelled output folder is an error and no new folder.
 
 use crate::IoError;
-use std::fs::File;
+use std::fs::{File, ReadDir};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -43,23 +43,40 @@ pub fn write_atomic_with(
     sync_folder(folder).map_err(IoError::file(folder, "flush the folder"))
 }
 
-/// Removes what killed processes left unfinished in a folder, not in the folders below it; returns the files' paths.
+/// Removes what killed processes left unfinished in a folder and in all folders below it; returns the files' paths.
 ///
-/// Nobody may be writing into the folder: see [`crate::lock`].
+/// Nothing else is touched: links are not followed, a folder below that has a lock file of its own is another program's
+/// to clear ([`crate::lock`]), and one below that must not be listed is nobody's that writes there. The folder itself must be held, so
+/// that nobody is writing into it.
 ///
 /// # Errors
-/// [`IoError::File`] if the folder cannot be listed or a file not be removed.
+/// [`IoError::File`] if a folder cannot be listed or a file not be removed.
 pub fn remove_leftovers(folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, IoError> {
     let folder = folder.as_ref();
     let mut removed = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(IoError::file(folder, "list the folder"))? {
-        let path = entry.map_err(IoError::file(folder, "list the folder"))?.path();
-        if is_unfinished(&path) {
+    let entries = std::fs::read_dir(folder).map_err(IoError::file(folder, "list the folder"))?;
+    clear(folder, entries, &mut removed)?;
+    Ok(removed)
+}
+
+fn clear(folder: &Path, entries: ReadDir, removed: &mut Vec<PathBuf>) -> Result<(), IoError> {
+    for entry in entries {
+        let entry = entry.map_err(IoError::file(folder, "list the folder"))?;
+        let path = entry.path();
+        let kind = entry.file_type().map_err(IoError::file(&path, "look at"))?;
+        if kind.is_file() && is_unfinished(&path) {
             std::fs::remove_file(&path).map_err(IoError::file(&path, "remove"))?;
             removed.push(path);
+        } else if kind.is_dir() && !path.join(crate::lock::FILE_NAME).exists() {
+            match std::fs::read_dir(&path) {
+                Ok(entries) => clear(&path, entries, removed)?,
+                // Such as `lost+found`, where the folder is the root of a disk.
+                Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {}
+                Err(error) => return Err(IoError::file(&path, "list the folder")(error)),
+            }
         }
     }
-    Ok(removed)
+    Ok(())
 }
 
 fn is_unfinished(path: &Path) -> bool {
@@ -134,15 +151,43 @@ mod tests {
     }
 
     #[test]
-    fn leftovers_go_and_everything_else_stays() {
+    fn leftovers_go_at_any_depth_and_everything_else_stays() {
         let folder = tempfile::tempdir().unwrap();
-        let (_, left) = temporary_in(folder.path()).unwrap().keep().unwrap();
+        let deep = folder.path().join("points/up_0100/moments");
+        fs::create_dir_all(&deep).unwrap();
+        let left = |folder: &Path| temporary_in(folder).unwrap().keep().unwrap().1;
+        let mut expected = [left(folder.path()), left(&deep), left(&folder.path().join("points"))];
         for name in ["a.txt", ".lock", ".a.tmp", "unfinished-a.tmp"] {
             fs::write(folder.path().join(name), b"x").unwrap();
         }
-        assert_eq!(remove_leftovers(folder.path()).unwrap(), [left]);
-        assert_eq!(entries(folder.path()), 4);
+        for name in ["a.txt", ".a.tmp", "unfinished-a.tmp"] {
+            fs::write(deep.join(name), b"x").unwrap();
+        }
+        fs::create_dir(folder.path().join(".unfinished-folder.tmp")).unwrap();
+        let mut removed = remove_leftovers(folder.path()).unwrap();
+        removed.sort();
+        expected.sort();
+        assert_eq!(removed, expected);
+        assert_eq!(entries(folder.path()), 6);
+        assert_eq!(entries(&deep), 3);
         assert!(remove_leftovers(folder.path()).unwrap().is_empty());
+    }
+
+    /// A folder of another run below this one, and what a link leads to, belong to others.
+    #[test]
+    fn leftovers_of_others_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let (held, elsewhere) = (folder.path().join("held"), tempfile::tempdir().unwrap());
+        fs::create_dir(&held).unwrap();
+        let _lock = crate::lock::FolderLock::acquire(&held).unwrap();
+        let others = [&held, elsewhere.path()].map(|folder| temporary_in(folder).unwrap().keep().unwrap().1);
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(elsewhere.path(), folder.path().join("link")).unwrap();
+            std::os::unix::fs::symlink(&others[1], folder.path().join(".unfinished-link.tmp")).unwrap();
+        }
+        assert!(remove_leftovers(folder.path()).unwrap().is_empty());
+        assert!(others.iter().all(|path| path.exists()));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// What can go wrong when something is written or read.
 #[derive(Debug, thiserror::Error)]
@@ -52,12 +53,14 @@ pub enum IoError {
         what: String,
     },
     /// Somebody else is at work in the folder.
-    #[error("{}: in use by {holder}; wait for its end or choose another folder", path.display())]
+    #[error("{}: in use by {holder} (waited {:.1} s); wait for its end or choose another folder", path.display(), waited.as_secs_f64())]
     Locked {
         /// The lock file.
         path: PathBuf,
         /// Who holds it, as written in the lock file.
         holder: String,
+        /// How long it was waited for.
+        waited: Duration,
     },
 }
 

@@ -18,7 +18,7 @@ use crate::outcome::Outcome;
 use crate::page::page;
 use crate::plots::write_pictures;
 use crate::provenance::provenance;
-use crate::report::Report;
+use crate::report::{Report, Row};
 use crate::runner::{Ended, Settings, Status, plan, run_all};
 use crate::store::{Earlier, Store};
 use crate::suites::{self, Suite};
@@ -29,7 +29,7 @@ use crate::user;
 pub const PASSED: u8 = 0;
 /// The case file is wrong: nothing was run.
 pub const BAD_INPUT: u8 = 2;
-/// A gate was missed that is not known to be.
+/// A gate was missed that is not known to be, or, asked to be strict, a miss that is known passes.
 pub const GATE_MISSED: u8 = 4;
 /// Stopped by Ctrl-C; finished runs are kept.
 pub const INTERRUPTED: u8 = 130;
@@ -42,7 +42,8 @@ const EXAMPLES: &str = "Examples:
 
 Each run is kept in DIR/runs as soon as it has ended. After Ctrl-C, a crash or a power cut --resume takes over those that
 this program would give again, to the last bit, and computes the others; runs of other code are computed again.
-Exit codes: 0 all gates passed (but for misses that are known), 2 bad input, 3 a run failed, 4 a gate was missed, 130 interrupted";
+Exit codes: 0 all gates passed (but for misses that are known), 2 bad input, 3 a run failed, 4 a gate was missed (with --strict:
+or a miss that is known passes), 130 interrupted";
 
 /// Runs problems with known answers, measures the errors and holds them against their gates.
 #[derive(Debug, Parser)]
@@ -72,6 +73,9 @@ pub struct Arguments {
     /// Throw the finished runs of an earlier validation in the folder away
     #[arg(long)]
     replace: bool,
+    /// Exit code 4 also where a miss that is written beside its gate passes: its entry is out of date
+    #[arg(long)]
+    strict: bool,
 }
 
 impl Arguments {
@@ -156,7 +160,8 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     print_tables(&report);
     let failed = ended.iter().filter_map(|ended| ended.result.as_ref().err());
     let worst = failed.inspect(|error| eprintln!("error: {error}")).map(ValidateError::exit_code).max();
-    let gate_missed = report.unexplained().next().is_some();
+    let out_of_date = arguments.strict && report.mended().next().is_some();
+    let gate_missed = report.unexplained().next().is_some() || out_of_date;
     Ok(worst.unwrap_or(if gate_missed { GATE_MISSED } else { PASSED }))
 }
 
@@ -194,20 +199,26 @@ fn print_tables(report: &Report) {
         _ => println!("{}", report.tally()),
     }
     for row in report.failures() {
-        let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
-        let gate = row.gate.map_or(String::new(), |gate| gate.to_string());
-        let variant = if row.variant.is_empty() { String::new() } else { format!("{} ", row.variant) };
+        let word = if row.known_miss.is_some() { "known miss" } else { "missed" };
+        let cause = row.known_miss.as_ref().map_or(String::new(), |cause| format!(": {cause}"));
+        println!("{word}: {}{cause}", judged(row));
+    }
+    for row in report.mended() {
         println!(
-            "{}: {} {variant}{} {n}: {} = {} {}, {gate}{}",
-            if row.known_miss.is_some() { "known miss" } else { "missed" },
-            row.suite,
-            row.scheme,
-            row.metric,
-            Significant(row.value),
-            row.unit,
-            row.known_miss.as_ref().map_or(String::new(), |cause| format!(": {cause}"))
+            "a known miss passes: {}; take its entry out of validation/{}/gates.ron",
+            judged(row),
+            row.suite
         );
     }
+}
+
+/// A figure with its gate, in a line.
+fn judged(row: &Row) -> String {
+    let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
+    let gate = row.gate.map_or(String::new(), |gate| gate.to_string());
+    let variant = if row.variant.is_empty() { String::new() } else { format!("{} ", row.variant) };
+    let value = Significant(row.value);
+    format!("{} {variant}{} {n}: {} = {value} {}, {gate}", row.suite, row.scheme, row.metric, row.unit)
 }
 
 /// Shows where the runs stand; a run that has ended is noted.

@@ -7,7 +7,7 @@
 //!
 //! A gate that is missed for a reason that is understood, or looked for in vain, stays where it is: the miss is written
 //! beside it (`known`), with what was reached and why. It is shown as a miss, but held to that figure alone; a miss that
-//! grows, or one that nobody has explained, fails the validation.
+//! grows, or one that nobody has explained, fails the validation. One that passes again is told: its entry has had its day.
 
 use std::collections::BTreeMap;
 
@@ -238,6 +238,13 @@ impl GateFile {
             })
         };
         misses.find(held).map(|miss| miss.cause.as_str())
+    }
+
+    /// Number and cause of the entry that names a figure of a run as a known miss, whether it is missed or not.
+    pub fn entry_of_miss(&self, case: &Case, metric: &str) -> Option<(usize, &str)> {
+        let names = |miss: &KnownMiss| miss.meant().fits(case, metric) && miss.reached.contains_key(&case.n);
+        let number = self.known.iter().position(names)?;
+        Some((number, &self.known[number].cause))
     }
 
     /// A figure that the file judges in runs like `case` and that is not among those `measured`: it would never be

@@ -63,9 +63,11 @@ fn facts(report: &Report) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Verdict of some rows: good if all gates passed, to be looked at if the misses are known ones, unknown without gates.
+/// Verdict of some rows: good if all gates passed, to be looked at if the misses are known ones or known ones pass, unknown
+/// without gates.
 fn verdict<'r>(rows: impl Iterator<Item = &'r Row>) -> Verdict {
     Verdict::worst(rows.filter_map(|row| match (row.passed?, &row.known_miss) {
+        (true, _) if row.mended_miss.is_some() => Some(Verdict::Caution),
         (true, _) => Some(Verdict::Good),
         (false, Some(_)) => Some(Verdict::Caution),
         (false, None) => Some(Verdict::Bad),
@@ -94,7 +96,7 @@ fn overview(report: &Report) -> Section {
     let verdicts: Vec<Verdict> = suites.iter().map(|suite| verdict(rows_of(report, suite))).collect();
     let view = TableView::from(&table).with_links("problem", anchors).with_verdicts("gates passed", verdicts);
     let mut section = Section::new("Overview").with_table(view);
-    let missed: Vec<String> = report.unexplained().map(missed_line).collect();
+    let missed: Vec<String> = report.unexplained().map(judged_line).collect();
     if !missed.is_empty() {
         section = section.with_text("Gates that were missed:").with_list(missed);
     }
@@ -104,6 +106,14 @@ fn overview(report: &Report) -> Section {
             .with_text("Gates whose misses are known; they were not moved, and a miss may not grow:")
             .with_list(known);
     }
+    let mended: Vec<String> = report.mended().map(judged_line).collect();
+    if !mended.is_empty() {
+        section = section
+            .with_text(
+                "Known misses that pass; their entries can be taken out of validation/<problem>/gates.ron:",
+            )
+            .with_list(mended);
+    }
     let failed: Vec<String> = report.runs.iter().filter_map(|run| run.failure.clone()).collect();
     if !failed.is_empty() {
         section = section.with_text("Runs that failed:").with_list(failed);
@@ -111,7 +121,7 @@ fn overview(report: &Report) -> Section {
     section
 }
 
-fn missed_line(row: &Row) -> String {
+fn judged_line(row: &Row) -> String {
     let n = row.n.map_or("all n".into(), |n| format!("n = {n}"));
     let gate = row.gate.map_or(String::new(), |gate| gate.to_string());
     let value = Significant(row.value);
@@ -123,7 +133,7 @@ fn missed_line(row: &Row) -> String {
 
 /// A known miss with its cause.
 fn known_line(row: &Row) -> Option<String> {
-    Some(format!("{}: {}", missed_line(row), row.known_miss.as_ref()?))
+    Some(format!("{}: {}", judged_line(row), row.known_miss.as_ref()?))
 }
 
 fn suite_section(

@@ -49,6 +49,21 @@ fn page_says_what_passed_and_what_was_missed() {
 }
 
 #[test]
+fn known_miss_that_passes_is_told_on_the_page_and_in_the_summary() {
+    let ended = [ended(|case| Ok(outcome(case, 0.04)))];
+    let mut report = Report::new(Provenance::default(), Tier::Quick, &ended).expect("good gates");
+    let texts = |report: &Report| {
+        let page = page(report, &ended).expect("pictures").to_html().expect("a page");
+        [page, crate::summary::summary(report, &[])]
+    };
+    assert!(texts(&report).iter().all(|text| !text.contains("Known misses that pass")));
+    report.rows[0].mended_miss = Some("a reason".into());
+    for text in texts(&report) {
+        assert!(text.contains("Known misses that pass") && text.contains("1 known miss passes"), "{text}");
+    }
+}
+
+#[test]
 fn failed_run_is_told_and_spoils_the_verdict() {
     let text = html(&[ended(|case| {
         Err(ValidateError::NotReached { case: case.to_string(), reason: "no stop after 5 us".into() })

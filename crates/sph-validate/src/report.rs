@@ -47,6 +47,9 @@ pub struct Row {
     pub passed: Option<bool>,
     /// Why it missed its gate, where that is written beside the gate and the miss has not grown.
     pub known_miss: Option<String>,
+    /// Why it missed its gate before, where that is still written beside the gate and nothing that the entry names at this
+    /// resolution misses any more: the entry can be taken out.
+    pub mended_miss: Option<String>,
 }
 
 /// What one run conserved and cost, or why it failed.
@@ -131,7 +134,9 @@ impl Report {
             let gates = GateFile::read(about.name, about.gates)?;
             let of_suite = ended.iter().filter(|ended| ended.job.case.suite == about.name);
             let outcomes: Vec<&Outcome> = of_suite.filter_map(|ended| ended.result.as_ref().ok()).collect();
+            let first = rows.len();
             push_suite(&mut rows, &gates, &about, &outcomes)?;
+            mark_mended(&mut rows[first..], &gates);
             suites.push(SuiteRecord {
                 name: about.name.to_owned(),
                 title: about.title.to_owned(),
@@ -148,13 +153,22 @@ impl Report {
         self.failures().filter(|row| row.known_miss.is_none())
     }
 
-    /// How many gates were passed, and how many misses are known ones, in a sentence.
+    /// Rows that passed their gate although a miss of theirs is written beside it.
+    pub fn mended(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| row.mended_miss.is_some())
+    }
+
+    /// How many gates were passed, how many misses are known ones, and how many of those pass, in a sentence.
     pub fn tally(&self) -> String {
         let (missed, unexplained) = (self.failures().count(), self.unexplained().count());
-        let words = format!("{} of {} gates passed", self.n_gates() - missed, self.n_gates());
-        match missed - unexplained {
+        let mut words = format!("{} of {} gates passed", self.n_gates() - missed, self.n_gates());
+        if missed > unexplained {
+            words += &format!(", {} misses are known and told with their causes", missed - unexplained);
+        }
+        match self.mended().count() {
             0 => words,
-            known => format!("{words}, {known} misses are known and told with their causes"),
+            1 => format!("{words}, 1 known miss passes"),
+            mended => format!("{words}, {mended} known misses pass"),
         }
     }
 
@@ -220,6 +234,7 @@ fn write_json(path: &Path, content: &impl Serialize) -> Result<(), ValidateError
 /// A gate's verdict as a word.
 fn passed_word(row: &Row) -> &'static str {
     match row.passed {
+        Some(true) if row.mended_miss.is_some() => "yes, mended",
         Some(true) => "yes",
         Some(false) if row.known_miss.is_some() => "no, known",
         Some(false) => "NO",
@@ -321,7 +336,25 @@ fn push_metric(rows: &mut Vec<Row>, gates: &GateFile, kin: &[&Outcome], metric: 
             order,
             passed,
             known_miss: known_miss.map(str::to_owned),
+            mended_miss: None,
         });
+    }
+}
+
+/// Notes known misses that pass: those whose entry names no row at this resolution that still misses.
+fn mark_mended(rows: &mut [Row], gates: &GateFile) {
+    let entry = |row: &Row| {
+        let case = Case::new(&row.suite, row.scheme, row.n?).of_variant(&row.variant);
+        let (number, cause) = gates.entry_of_miss(&case, &row.metric)?;
+        Some((number, case.n, cause.to_owned(), row.passed?))
+    };
+    let named: Vec<_> = rows.iter().map(entry).collect();
+    let still = |number: usize, n: u32| {
+        named.iter().flatten().any(|other| (other.0, other.1, other.3) == (number, n, false))
+    };
+    for (row, named) in rows.iter_mut().zip(&named) {
+        let Some((number, n, cause, _)) = named else { continue };
+        row.mended_miss = (!still(*number, *n)).then(|| cause.clone());
     }
 }
 
@@ -350,6 +383,7 @@ fn order_row(gates: &GateFile, kin: &[&Outcome], metric: &Metric) -> Option<Row>
         order: Some(value),
         passed: gate.map(|gate| gate.passes(value, 0.0)),
         known_miss: None,
+        mended_miss: None,
     })
 }
 

@@ -93,6 +93,41 @@ fn known_miss_is_told_and_one_that_has_grown_fails() {
     assert_eq!(grown.tally(), "6 of 7 gates passed");
 }
 
+/// An entry whose miss is mended is told, so that it does not stay and hide the next one.
+#[test]
+fn known_miss_that_passes_is_told_by_row_and_tally() {
+    let mended = report([0.0065, 0.0008, 0.0001]);
+    let told: Vec<_> = mended.mended().map(|row| (row.n, row.metric.as_str())).collect();
+    assert_eq!(told, [(Some(100), "velocity_l1")], "n = 200 and 400 are not in the entry");
+    assert_eq!(mended.rows[0].mended_miss.as_deref(), Some("a reason"));
+    assert_eq!(mended.tally(), "7 of 7 gates passed, 1 known miss passes");
+    assert!(mended.table(&mended.suites[0]).contains("yes, mended"));
+    for still in [0.031, 0.033, f64::NAN] {
+        assert_eq!(report([still, 0.0008, 0.0001]).mended().count(), 0, "{still}");
+    }
+}
+
+/// An entry without a scheme names a row of each: it has had its day when none of them misses.
+#[test]
+fn entry_of_several_rows_is_mended_when_all_pass() {
+    let both = |csph: f64| {
+        let mut other = ended(100, Measurement::error_of(VELOCITY_L1, csph));
+        other.job.case.scheme = SchemeName::Csph;
+        other.result.as_mut().expect("an outcome").case.scheme = SchemeName::Csph;
+        let ended = [ended(100, Measurement::error_of(VELOCITY_L1, 0.0065)), other];
+        let mut report = Report::new(Provenance::default(), Tier::Quick, &ended).expect("good gates");
+        // The figure of CSPH is judged too.
+        let gate = report.rows[0].gate.expect("a gate");
+        for row in report.rows.iter_mut().filter(|row| row.scheme == SchemeName::Csph) {
+            row.passed = (row.metric == "velocity_l1").then(|| gate.passes(row.value, 0.0)).or(row.passed);
+        }
+        let gates = GateFile::read("paper", Paper.about().gates).expect("good gates");
+        mark_mended(&mut report.rows, &gates);
+        report.mended().count()
+    };
+    assert_eq!((both(0.0065), both(0.031)), (2, 0));
+}
+
 #[test]
 fn finest_run_is_the_reference_where_no_answer_is_known() {
     let of = |(n, value)| ended(n, Measurement::against_finest(PERIOD, value));

@@ -8,8 +8,8 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use sph_io::checkpoint;
 use sph_io::lock::FolderLock;
+use sph_io::{atomic, checkpoint};
 
 use crate::case::Case;
 use crate::error::ValidateError;
@@ -63,6 +63,8 @@ impl Store {
         if earlier == Earlier::Replace {
             kept.iter().try_for_each(std::fs::remove_file).map_err(|error| fault(error.to_string()))?;
         }
+        // What a killed process was just writing.
+        atomic::remove_leftovers(out).map_err(|error| fault(error.to_string()))?;
         Ok(store)
     }
 
@@ -150,9 +152,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let open = |earlier| Store::open(folder.path(), earlier);
         open(Earlier::Refuse).expect("an empty folder").save(&outcome(), "").expect("written");
+        let left = ["", "runs", "plots"].map(|part| folder.path().join(part).join(".unfinished-Ab3x9q.tmp"));
+        std::fs::create_dir_all(folder.path().join("plots")).expect("a folder");
+        left.iter().for_each(|path| std::fs::write(path, "half").expect("written"));
         let refusal = open(Earlier::Refuse).expect_err("there is a run").to_string();
         assert!(refusal.contains("--resume") && refusal.contains("--replace"), "{refusal}");
+        assert!(left.iter().all(|path| path.exists()), "a validation that is refused touches nothing");
         assert!(open(Earlier::Resume).expect("goes on").load(&outcome().case, "").is_some());
+        assert!(!left.iter().any(|path| path.exists()), "what a killed process was writing is cleared away");
         assert!(open(Earlier::Replace).expect("throws away").load(&outcome().case, "").is_none());
     }
 

@@ -59,7 +59,7 @@ fn push_suite(text: &mut String, report: &Report, suite: &SuiteRecord) {
     push_known(text, &rows);
 }
 
-/// The known misses of a suite, one line a cause.
+/// The known misses of a suite, one line a cause; then those that pass.
 fn push_known(text: &mut String, rows: &[&Row]) {
     let mut causes: Vec<&str> = Vec::new();
     for cause in rows.iter().filter_map(|row| row.known_miss.as_deref()) {
@@ -70,6 +70,18 @@ fn push_known(text: &mut String, rows: &[&Row]) {
     if !causes.is_empty() {
         let lines: Vec<String> = causes.iter().map(|cause| format!("- {cause}\n")).collect();
         let _ = writeln!(text, "Known misses:\n\n{}", lines.concat());
+    }
+    let line = |row: &Row| {
+        let variant = if row.variant.is_empty() { String::new() } else { format!("{}, ", row.variant) };
+        let n = row.n.map_or(String::new(), |n| format!(", n = {n}"));
+        format!("- {variant}{}, {}{n}\n", row.scheme.title(), row.metric.replace('_', " "))
+    };
+    let mended: String = rows.iter().copied().filter(|row| row.mended_miss.is_some()).map(line).collect();
+    if !mended.is_empty() {
+        let _ = writeln!(
+            text,
+            "Known misses that pass; their entries can be taken out of the gates:\n\n{mended}"
+        );
     }
 }
 

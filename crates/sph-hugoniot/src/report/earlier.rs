@@ -89,31 +89,14 @@ pub fn settle(folder: &Path, case: &Case, earlier: Earlier) -> Result<Option<Str
     }
 }
 
-/// Removes what a killed process was just writing into the folder; other files of the user's stay.
+/// Removes what a killed process was just writing into the folder, or into any folder below; other files of the user's stay.
+/// The folder must be held.
 ///
 /// # Errors
 /// If a folder cannot be listed, or a file not be removed.
 pub fn clear_leftovers(folder: &Path) -> Result<()> {
-    clear(folder)?;
-    let points = folder.join("points");
-    if points.is_dir() { clear_below(&points) } else { Ok(()) }
-}
-
-fn clear(folder: &Path) -> Result<()> {
     for path in atomic::remove_leftovers(folder)? {
         tracing::debug!("{}: left unfinished by a process that was killed; removed", path.display());
-    }
-    Ok(())
-}
-
-fn clear_below(folder: &Path) -> Result<()> {
-    clear(folder)?;
-    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let entry = entry?;
-        // A link to a folder is none: what lies elsewhere is not the run's.
-        if entry.file_type()?.is_dir() {
-            clear_below(&entry.path())?;
-        }
     }
     Ok(())
 }

@@ -60,25 +60,51 @@ const WORST: [Number<Worst>; 8] = [
     ("time_step_least", "s", "shortest step", |w| w.time_step_least),
 ];
 
-/// A count: name, description, and how it is read.
-type Count = (&'static str, &'static str, fn(&Interventions) -> u64);
+/// What acted up to a moment: bounds of the scheme, and boosts of the frame that were bounded.
+#[derive(Clone, Copy, Debug, Default)]
+struct Acted {
+    interventions: Interventions,
+    boosts_bounded: u64,
+}
+
+impl From<&MonitorRow> for Acted {
+    fn from(row: &MonitorRow) -> Self {
+        Self { interventions: row.interventions, boosts_bounded: row.boosts_bounded }
+    }
+}
+
+impl From<Worst> for Acted {
+    fn from(worst: Worst) -> Self {
+        Self { interventions: worst.interventions, boosts_bounded: worst.boosts_bounded }
+    }
+}
+
+/// A count: name, description, whether it counts particle-steps, and how it is read.
+type Count = (&'static str, &'static str, bool, fn(&Acted) -> u64);
 
 /// What acted, with what is counted.
-const COUNTS: [Count; 3] = [
-    ("inverse_capped", "particle-steps with the inverse of L at its cap: free surfaces", |i| {
-        i.inverse_capped
+const COUNTS: [Count; 4] = [
+    ("inverse_capped", "particle-steps with the inverse of L at its cap: free surfaces", true, |a| {
+        a.interventions.inverse_capped
     }),
-    ("relaxation_bounded", "particle-steps with the relaxation of the volume at its bound", |i| {
-        i.relaxation_bounded
+    ("relaxation_bounded", "particle-steps with the relaxation of the volume at its bound", true, |a| {
+        a.interventions.relaxation_bounded
     }),
-    ("failures", "times that a particle failed in tension", |i| i.failures),
+    ("failures", "times that a particle failed in tension", true, |a| a.interventions.failures),
+    (
+        "boosts_bounded",
+        "boosts of the frame that were bounded: the outlet would have moved into the box",
+        false,
+        |a| a.boosts_bounded,
+    ),
 ];
 
-/// What is counted of the frame.
-const BOOSTS: &str = "boosts of the frame that were bounded: the outlet would have moved into the box";
-
-fn bounded_boosts(worst: Option<Worst>) -> i64 {
-    worst.map_or(0, |w| w.boosts_bounded as i64)
+/// The table with a column for each count at its right; `ending` follows each description.
+fn with_counts(table: Table, acted: &[Acted], ending: &str) -> Table {
+    COUNTS.iter().fold(table, |table, (name, text, _, value)| {
+        let counts: Vec<i64> = acted.iter().map(|a| value(a) as i64).collect();
+        table.with(Column::integer(name, "", &format!("{text}{ending}"), counts))
+    })
 }
 
 /// What was watched of a point, a row for each cell that the front swept.
@@ -86,19 +112,8 @@ pub fn table(outcome: &PointOutcome) -> Table {
     let title =
         format!("Monitors at u_p = {} m/s, cell by cell of the front's way", outcome.particle_velocity);
     let rows: Vec<&MonitorRow> = outcome.monitors.iter().collect();
-    let table = add(Table::new(title), &ROW, &rows);
-    COUNTS
-        .iter()
-        .fold(table, |table, (name, text, value)| {
-            let counts: Vec<i64> = rows.iter().map(|r| value(&r.interventions) as i64).collect();
-            table.with(Column::integer(name, "", &format!("{text}, since the start"), counts))
-        })
-        .with(Column::integer(
-            "boosts_bounded",
-            "",
-            &format!("{BOOSTS}, since the start"),
-            rows.iter().map(|r| r.boosts_bounded as i64).collect::<Vec<i64>>(),
-        ))
+    let acted: Vec<Acted> = rows.iter().map(|row| Acted::from(*row)).collect();
+    with_counts(add(Table::new(title), &ROW, &rows), &acted, ", since the start")
 }
 
 /// The table with the worst of each point at its right.
@@ -108,34 +123,25 @@ pub fn with_worst(table: Table, outcomes: &[&PointOutcome]) -> Table {
         let values: Vec<f64> = worst.iter().map(|w| w.as_ref().map_or(f64::NAN, value)).collect();
         table.with(Column::float(name, unit, text, values))
     });
-    COUNTS
-        .iter()
-        .fold(table, |table, (name, text, value)| {
-            let counts: Vec<i64> =
-                worst.iter().map(|w| w.map_or(0, |w| value(&w.interventions)) as i64).collect();
-            table.with(Column::integer(name, "", text, counts))
-        })
-        .with(Column::integer(
-            "boosts_bounded",
-            "",
-            BOOSTS,
-            worst.iter().map(|w| bounded_boosts(*w)).collect::<Vec<i64>>(),
-        ))
+    let acted: Vec<Acted> = worst.iter().map(|w| w.map_or(Acted::default(), Acted::from)).collect();
+    with_counts(table, &acted, "")
 }
 
 /// What bounded a value on the way, one line each; nothing acts in silence.
 pub fn interventions(outcomes: &[&PointOutcome]) -> Vec<String> {
     let steps: u64 = outcomes.iter().map(|o| o.particle_steps).sum();
-    let line = |(name, text, value): &Count| {
-        let count: u64 = outcomes.iter().filter_map(|o| o.worst()).map(|w| value(&w.interventions)).sum();
+    let acted: Vec<Acted> = outcomes.iter().filter_map(|o| o.worst()).map(Acted::from).collect();
+    let line = |(name, text, of_particle_steps, value): &Count| {
+        let count: u64 = acted.iter().map(value).sum();
         let share = 100.0 * count as f64 / steps as f64;
-        (count > 0).then(|| format!("{name}: {count} ({share:.2e} % of all particle-steps): {text}"))
+        let share = if *of_particle_steps {
+            format!(" ({share:.2e} % of all particle-steps)")
+        } else {
+            String::new()
+        };
+        (count > 0).then(|| format!("{name}: {count}{share}: {text}"))
     };
     let mut lines: Vec<String> = COUNTS.iter().filter_map(line).collect();
-    let boosts: i64 = outcomes.iter().map(|o| bounded_boosts(o.worst())).sum();
-    if boosts > 0 {
-        lines.push(format!("boosts_bounded: {boosts}: {BOOSTS}"));
-    }
     let floored = outcomes.iter().filter_map(|o| o.worst()).map(|w| w.floored_share).fold(0.0, f64::max);
     if floored > 0.0 {
         lines.push(format!(

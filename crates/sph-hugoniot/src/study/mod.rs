@@ -20,6 +20,7 @@ use sph_io::table::{Column, Table, Values};
 use self::extrapolate::{AtSize, Extrapolated, extrapolate};
 use crate::config::Case;
 use crate::config::units::{LengthKind, show};
+use crate::report::earlier;
 use crate::run::{self, RunEnd, RunOptions};
 
 /// A micrometer [1/m].
@@ -41,6 +42,10 @@ pub struct Row {
 /// # Errors
 /// As a single run.
 pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &AtomicBool) -> Result<RunEnd> {
+    let _lock = match run::hold(&options.folder)? {
+        Ok(lock) => lock,
+        Err(refused) => return Ok(refused),
+    };
     let mut some_failed = false;
     let mut tables = Vec::new();
     for case in cases {
@@ -59,6 +64,7 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
         tables.push((size, Table::read_csv(folder.join("hugoniot.csv"))?));
     }
     let rows = rows(&tables);
+    earlier::clear_leftovers(&options.folder)?;
     write(&options.folder, &cases[0].name, &rows)?;
     let table = table(&cases[0].name, &rows);
     if options.json {

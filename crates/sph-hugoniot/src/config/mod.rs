@@ -7,12 +7,14 @@
 pub mod case;
 pub mod medium;
 pub mod resolve;
+mod resolve_image;
 mod resolve_layout;
 mod resolve_material;
 mod resolve_medium;
 mod resolve_points;
 mod resolve_scheme;
 mod resolve_search;
+mod resolve_shapes;
 pub mod schema;
 pub mod schema_medium;
 

@@ -1,6 +1,5 @@
-//! What fills the cell of a case: base or picture, layers, inclusions, shapes, and what is placed at random.
-
-use glam::DVec2;
+//! What fills the cell of a case: base, layers, inclusions, and what is placed at random. Pictures are read in
+//! `resolve_image`, shapes in `resolve_shapes`.
 
 use super::fault::{Span, name_hint};
 use super::field::Field;
@@ -9,14 +8,13 @@ use super::resolve::{Resolver, span_of};
 use super::resolve_medium::{Draft, Surroundings, is_listed};
 use super::schema::*;
 use super::units::{LengthKind, show, significant};
-use crate::microstructure::image::{Edges, GrayImage, ImageLayout};
 use crate::microstructure::layout::{Base, Fill, Layout};
 use crate::microstructure::placement::{self, Amount, Refusal, Request, Sizes};
 use crate::microstructure::pore_centers;
 use crate::microstructure::shape::Shape;
 
 /// Most shapes, layers or corners of a list.
-const MOST: usize = 2000;
+pub(super) const MOST: usize = 2000;
 
 impl Resolver<'_> {
     /// What is there before anything is painted.
@@ -38,7 +36,12 @@ impl Resolver<'_> {
     }
 
     /// A filling by the material's name.
-    fn fill(&self, field: &Field<FillSchema>, default: Fill, around: Surroundings<'_>) -> Option<Fill> {
+    pub(super) fn fill(
+        &self,
+        field: &Field<FillSchema>,
+        default: Fill,
+        around: Surroundings<'_>,
+    ) -> Option<Fill> {
         let (fill, span) = match field {
             Field::Absent => return Some(default),
             Field::Bad(_) => return None,
@@ -53,137 +56,6 @@ impl Resolver<'_> {
         let message = format!("no material of this case is called {name:?}");
         self.refuse(span.clone(), message, &format!("{}; list them in `materials`", name_hint(name, &known)));
         None
-    }
-
-    fn image(&self, image: &ImageSchema, group: &Span, around: Surroundings<'_>) -> Option<ImageLayout> {
-        let pixel_size = self.needed(&image.pixel_size, "pixel_size", group, 1e-10, 1e-2);
-        let ranges = self.levels(image, group, around);
-        let edges = match self.choice(&image.edges, EdgesSchema::Mirror)? {
-            EdgesSchema::Mirror => Edges::Mirror,
-            EdgesSchema::Periodic => Edges::Periodic,
-        };
-        let name = image.file.required("file", group, self.faults)?;
-        let picture = match GrayImage::read(&around.folder.join(name)) {
-            Ok(picture) => picture,
-            Err(message) => {
-                let hint =
-                    "a PNG file, its path relative to the case file; crop or shrink one that is too large";
-                self.refuse(span_of(&image.file), message, hint);
-                return None;
-            }
-        };
-        let picture = self.crop(&image.crop, picture)?;
-        let (pixel_size, ranges) = (pixel_size?, ranges?);
-        if edges == Edges::Periodic {
-            self.seams_fit(
-                &picture,
-                &ranges,
-                pixel_size,
-                &image.edges.span().unwrap_or_else(|| group.clone()),
-            )?;
-        }
-        Some(ImageLayout::new(name.clone(), &picture, ranges, pixel_size, edges))
-    }
-
-    /// Ranges of gray levels: they rise, and the last reaches white.
-    fn levels(
-        &self,
-        image: &ImageSchema,
-        group: &Span,
-        around: Surroundings<'_>,
-    ) -> Option<Vec<(f64, Fill)>> {
-        let list = image.levels.required("levels", group, self.faults)?;
-        let span = span_of(&image.levels);
-        let read = |field: &Field<LevelSchema>| {
-            let level = field.get()?;
-            let of = level.of.required("of", &span_of(field), self.faults).map(|_| ());
-            let up_to = self.count(&level.up_to, 255, 0, 255);
-            let fill = of.and_then(|()| self.fill(&level.of, Fill::Void, around));
-            up_to.zip(fill)
-        };
-        // All are read before any is left out, so that the faults of all are told.
-        let read: Vec<Option<(usize, Fill)>> = list.iter().map(read).collect();
-        let mut ranges: Vec<(f64, Fill)> = Vec::new();
-        for (field, read) in list.iter().zip(read) {
-            let (level, (up_to, fill)) = (field.get()?, read?);
-            if ranges.last().is_some_and(|last| last.0 >= up_to as f64) {
-                let message = format!("{up_to} is not above the level before");
-                self.refuse(span_of(&level.up_to), message, "list levels from black (0) to white (255)");
-                return None;
-            }
-            ranges.push((up_to as f64, fill));
-        }
-        if ranges.last().is_none_or(|last| last.0 < 255.0) {
-            self.refuse(
-                span,
-                "the levels do not reach 255, white".into(),
-                "leave `up_to` of the last one out",
-            );
-            return None;
-        }
-        Some(ranges)
-    }
-
-    fn crop(&self, field: &Field<CropSchema>, picture: GrayImage) -> Option<GrayImage> {
-        let (crop, span) = match field {
-            Field::Absent => return Some(picture),
-            Field::Bad(_) => return None,
-            Field::Good(crop, span) => (crop, span),
-        };
-        let most = 1 << 24;
-        let left = self.count(&crop.left, 0, 0, most)?;
-        let top = self.count(&crop.top, 0, 0, most)?;
-        let width = self.count(&crop.width, picture.width.saturating_sub(left) as u64, 1, most)?;
-        let height = self.count(&crop.height, picture.height.saturating_sub(top) as u64, 1, most)?;
-        let part = picture.crop(left, top, width, height);
-        if part.is_none() {
-            let message = format!(
-                "columns {left} to {} and rows {top} to {} are not all in the picture",
-                left + width,
-                top + height
-            );
-            self.refuse(
-                span.clone(),
-                message,
-                &format!("it has {} × {} pixels", picture.width, picture.height),
-            );
-        }
-        part
-    }
-
-    /// A picture that is taken as periodic must fit to itself.
-    fn seams_fit(&self, picture: &GrayImage, ranges: &[(f64, Fill)], pixel: f64, span: &Span) -> Option<()> {
-        let mut good = true;
-        for (vertical, edges, lines, rows) in
-            [(true, "left and right", "columns", "rows"), (false, "upper and lower", "rows", "columns")]
-        {
-            let seam = picture.seam(ranges, vertical);
-            if seam.is_periodic() {
-                continue;
-            }
-            good = false;
-            let (first, last) = seam.span.unwrap_or((0, 0));
-            let at = |k: usize| show::<LengthKind>(k as f64 * pixel);
-            let message = format!(
-                "the picture is not periodic: its {edges} edges differ in {:.0} % of the {rows}, between {rows} {first} \
-                 and {last} ({} and {}); neighboring {lines} inside differ in at most {:.0} %",
-                100.0 * seam.share,
-                at(first),
-                at(last),
-                100.0 * seam.usual
-            );
-            self.refuse(
-                span.clone(),
-                message,
-                "`edges: Mirror` makes any picture periodic; or `crop` to whole periods",
-            );
-        }
-        good.then_some(())
-    }
-
-    fn place(&self, field: &Field<PointSchema>, name: &str, group: &Span) -> Option<DVec2> {
-        let PointSchema(x, y) = field.required(name, group, self.faults)?;
-        Some(DVec2::new(x.si, y.si))
     }
 }
 
@@ -382,129 +254,4 @@ impl Draft<'_> {
             }
         }
     }
-
-    /// Shapes in their order; returns those of voids.
-    pub(super) fn paint_shapes(&self, r: &Resolver<'_>, layout: &mut Layout) -> Vec<Shape> {
-        let Field::Good(list, span) = &self.m.shapes else { return Vec::new() };
-        if list.len() > MOST {
-            r.refuse(span.clone(), format!("{} shapes are listed", list.len()), &format!("at most {MOST}"));
-            return Vec::new();
-        }
-        let mut standing = Vec::new();
-        for field in list {
-            let Some(schema) = field.get() else { continue };
-            let span = span_of(field);
-            let read = self.shape(r, schema, &span);
-            if let Some((shape, fill)) = read.filter(|(shape, _)| self.is_in_cell(r, shape, &span)) {
-                standing.push(shape.clone());
-                layout.paint(shape, fill);
-            }
-        }
-        standing
-    }
-
-    fn shape(&self, r: &Resolver<'_>, schema: &ShapeSchema, span: &Span) -> Option<(Shape, Fill)> {
-        let fill = |of: &Field<FillSchema>| r.fill(of, Fill::Void, self.around);
-        let most = self.cell.max_element();
-        match schema {
-            ShapeSchema::Circle(c) => {
-                let center = r.place(&c.center, "center", span);
-                let radius = r.needed(&c.radius, "radius", span, 0.25 * self.size, most);
-                Some((Shape::Circle { center: center?, radius: radius? }, fill(&c.of)?))
-            }
-            ShapeSchema::Ellipse(e) => {
-                let center = r.place(&e.center, "center", span);
-                let axes = r.place(&e.semi_axes, "semi_axes", span);
-                let angle = r.number(&e.angle, 0.0, -360.0, 360.0)?.to_radians();
-                let axes = self.positive(r, axes?, &e.semi_axes, "half axes")?;
-                Some((Shape::ellipse(center?, axes, angle), fill(&e.of)?))
-            }
-            ShapeSchema::Rectangle(b) => {
-                let (lower, upper) = (r.place(&b.lower, "lower", span), r.place(&b.upper, "upper", span));
-                let (lower, upper) = (lower?, upper?);
-                self.positive(r, upper - lower, &b.upper, "edges")?;
-                Some((Shape::Rectangle { lower, upper }, fill(&b.of)?))
-            }
-            ShapeSchema::Polygon(p) => {
-                let list = p.corners.required("corners", span, r.faults)?;
-                let corners: Vec<DVec2> =
-                    list.iter().filter_map(|f| f.get()).map(|c| DVec2::new(c.0.si, c.1.si)).collect();
-                let shape = self.polygon(r, corners, &span_of(&p.corners))?;
-                Some((shape, fill(&p.of)?))
-            }
-        }
-    }
-
-    fn positive<T>(&self, r: &Resolver<'_>, lengths: DVec2, field: &Field<T>, what: &str) -> Option<DVec2> {
-        if lengths.min_element() >= 0.25 * self.size {
-            return Some(lengths);
-        }
-        let (x, y) = (show::<LengthKind>(lengths.x), show::<LengthKind>(lengths.y));
-        let least = show::<LengthKind>(0.25 * self.size);
-        r.refuse(span_of(field), format!("its {what} are {x} and {y}"), &format!("at least D/4 = {least}"));
-        None
-    }
-
-    /// A polygon has an area, and its edges do not cross.
-    fn polygon(&self, r: &Resolver<'_>, corners: Vec<DVec2>, span: &Span) -> Option<Shape> {
-        if !(3..=MOST).contains(&corners.len()) {
-            r.refuse(
-                span.clone(),
-                format!("a polygon of {} corners", corners.len()),
-                &format!("from 3 to {MOST}"),
-            );
-            return None;
-        }
-        let n = corners.len();
-        let edge = |k: usize| (corners[k], corners[(k + 1) % n]);
-        for a in 0..n {
-            for b in a + 2..n {
-                if (b + 1) % n != a && cross(edge(a), edge(b)) {
-                    let message = format!("the edges from corner {} and from corner {} cross", a + 1, b + 1);
-                    r.refuse(
-                        span.clone(),
-                        message,
-                        "list corners in the order in which the outline meets them",
-                    );
-                    return None;
-                }
-            }
-        }
-        let shape = Shape::Polygon { corners };
-        if shape.area(0.0) < 0.05 * self.size * self.size {
-            r.refuse(
-                span.clone(),
-                "the polygon has next to no area".into(),
-                "corners in order, two lengths each",
-            );
-            return None;
-        }
-        Some(shape)
-    }
-
-    /// A shape begins in the cell and is no longer than it; what hangs over a side comes in at the other.
-    fn is_in_cell(&self, r: &Resolver<'_>, shape: &Shape, span: &Span) -> bool {
-        let (middle, half) = shape.bounds();
-        let (lower, upper) = (middle - half, middle + half);
-        let size = |v: DVec2| format!("{} × {}", show::<LengthKind>(v.x), show::<LengthKind>(v.y));
-        let slack = 1e-9 * self.cell;
-        if (2.0 * half).cmpgt(self.cell + slack).any() {
-            let message = format!("it is {} large, the cell {}", size(2.0 * half), size(self.cell));
-            r.refuse(span.clone(), message, "a shape no larger than the cell");
-            return false;
-        }
-        if upper.cmple(DVec2::ZERO).any() || lower.cmpge(self.cell).any() {
-            let at = |v: DVec2| format!("({}, {})", show::<LengthKind>(v.x), show::<LengthKind>(v.y));
-            let message = format!("it reaches from {} to {}, outside of the cell", at(lower), at(upper));
-            r.refuse(span.clone(), message, &format!("the cell reaches from (0, 0) to {}", at(self.cell)));
-            return false;
-        }
-        true
-    }
-}
-
-/// True if two edges cross.
-fn cross((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> bool {
-    let side = |p: DVec2, q: DVec2, x: DVec2| (q - p).perp_dot(x - p).signum();
-    side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)
 }

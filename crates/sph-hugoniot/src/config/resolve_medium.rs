@@ -1,4 +1,5 @@
-//! The medium of a case: cell, particles, pores, porosity; what fills the cell is read in `resolve_layout`.
+//! The medium of a case: cell, particles, pores, porosity; what fills the cell is read in `resolve_layout`, `resolve_image`
+//! and `resolve_shapes`.
 
 use std::f64::consts::PI;
 use std::path::Path;

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
-use crate::config::resolve::PARTICLE_VELOCITIES;
+use crate::config::PARTICLE_VELOCITIES;
 use crate::config::units::{Length, LengthKind, Velocity, show};
 use crate::report::curves::load_data;
 use crate::run::{self, Earlier, RunEnd, RunOptions};

@@ -1,8 +1,8 @@
 //! From a case file to the Hugoniot u_s(u_p) of a porous solid, with uncertainty.
 //!
 //! The way of a case: [`config`] (text to a checked case in SI) → [`microstructure`] (one periodic sample) → [`point`] (one
-//! u_p run to a steady front, in a moving window) → [`sweep`] (all points side by side) → [`report`] (tables and
-//! pictures). [`run`] ties them together for the command line, [`cli`].
+//! u_p run to a steady front, in a moving window) → [`sweep`] (all points side by side) → `report` (tables and
+//! pictures). `run` ties them together for the command line, [`cli`].
 //!
 //! SI units inside; stress is positive in tension, pressure positive in compression. Velocities of observables are
 //! relative to the undisturbed medium.
@@ -10,33 +10,33 @@
 // Units stand in brackets, `[m]`; rustdoc would take them for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
-pub mod check;
+mod check;
 pub mod cli;
 pub mod config;
 pub mod curve;
 pub mod estimate;
-pub mod failure;
-pub mod film;
+mod failure;
+mod film;
 pub mod microstructure;
-pub mod monitor;
+mod monitor;
 pub mod observe;
 pub mod outcome;
-pub mod paraview;
+mod paraview;
 pub mod point;
-pub mod reference;
-pub mod refine;
-pub mod report;
+mod reference;
+mod refine;
+mod report;
 pub mod restart;
-pub mod run;
+mod run;
 pub mod schema;
-pub mod separation;
-pub mod series;
+mod separation;
+mod series;
 pub mod settle;
 pub mod setup;
-pub mod shell;
+mod shell;
 pub mod statistics;
-pub mod status;
-pub mod study;
+mod status;
+mod study;
 pub mod sweep;
 pub mod template;
-pub mod zone;
+mod zone;

@@ -7,10 +7,11 @@ use sph_materials::jump::JumpResiduals;
 use sph_riemann::StageTimes;
 use sph_window::search::bisection::Trial;
 
-use crate::film::Frame;
-use crate::monitor::{MonitorRow, Worst, worst};
+pub use crate::film::Frame;
+use crate::monitor::worst;
+pub use crate::monitor::{MonitorRow, Worst};
 use crate::observe::{Bin, Fields, Precursor, States};
-use crate::series::SeriesLog;
+pub use crate::series::SeriesLog;
 use crate::settle::BlockRecord;
 
 /// How a point ended.
@@ -155,7 +156,7 @@ impl PointOutcome {
     }
 
     /// The point as an adaptive sweep sees it.
-    pub fn known(&self) -> crate::refine::Known {
+    pub(crate) fn known(&self) -> crate::refine::Known {
         crate::refine::Known {
             particle_velocity: self.particle_velocity,
             shock_velocity: self.shock_velocity,
@@ -170,7 +171,7 @@ impl PointOutcome {
 }
 
 /// Name of the files of the point with this u_p [m/s].
-pub fn file_stem(particle_velocity: f64) -> String {
+pub(crate) fn file_stem(particle_velocity: f64) -> String {
     let (whole, part) = (particle_velocity.trunc(), particle_velocity.fract());
     let part =
         if part == 0.0 { String::new() } else { format!("{part}").trim_start_matches('0').to_string() };

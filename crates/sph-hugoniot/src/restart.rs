@@ -23,7 +23,7 @@ use crate::point::PointProgress;
 use crate::setup;
 
 /// Time between two states on disk, unless asked for otherwise.
-pub const INTERVAL: Duration = Duration::from_secs(60);
+pub(crate) const INTERVAL: Duration = Duration::from_secs(60);
 
 /// Where a point is kept, and how often.
 #[derive(Debug)]
@@ -91,7 +91,7 @@ impl Keeper {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn finish(&self, outcome: &PointOutcome) -> Result<()> {
+    pub(crate) fn finish(&self, outcome: &PointOutcome) -> Result<()> {
         checkpoint::write(self.outcome_path(), outcome, &[])?;
         self.forget_states()
     }
@@ -111,25 +111,13 @@ impl Keeper {
         Ok(())
     }
 
-    /// Removes what is kept.
-    ///
-    /// # Errors
-    /// If it cannot be removed.
-    pub fn forget(&self) -> Result<()> {
-        let path = self.outcome_path();
-        if path.exists() {
-            std::fs::remove_file(&path)?;
-        }
-        self.forget_states()
-    }
-
     /// True when the last state is old enough for another, or a stage of the point has ended since.
-    pub fn is_due(&self) -> bool {
+    pub(crate) fn is_due(&self) -> bool {
         self.stage_ended || self.last.elapsed() >= self.interval
     }
 
     /// A stage of the point has ended: its state is kept before the next step.
-    pub fn make_due(&mut self) {
+    pub(crate) fn make_due(&mut self) {
         self.stage_ended = true;
     }
 
@@ -137,7 +125,7 @@ impl Keeper {
     ///
     /// # Errors
     /// If it cannot be written; the states before still stand.
-    pub fn save(&mut self, window: &Window<Dim2>, progress: &PointProgress) -> Result<()> {
+    pub(crate) fn save(&mut self, window: &Window<Dim2>, progress: &PointProgress) -> Result<()> {
         let simulation = window.simulation();
         let snapshot = window.snapshot();
         let present = Columns::of(simulation.particles(), simulation.list_positions(), "");
@@ -161,7 +149,7 @@ impl Keeper {
     ///
     /// # Errors
     /// If there are states and none can be used.
-    pub fn load(
+    pub(crate) fn load(
         &self,
         case: &Case,
         sample: &Sample,

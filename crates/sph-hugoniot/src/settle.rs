@@ -81,7 +81,7 @@ pub struct BlockRecord {
 }
 
 /// The blocks that start-up consists of, from the velocities of its cells [m/s].
-pub fn startup_records(cells: &[f64], first: f64, block_cells: usize) -> Vec<BlockRecord> {
+pub(crate) fn startup_records(cells: &[f64], first: f64, block_cells: usize) -> Vec<BlockRecord> {
     let record = |(k, block): (usize, &[f64])| BlockRecord {
         from: first + (k * block_cells) as f64,
         to: first + (k * block_cells + block.len()) as f64,
@@ -97,7 +97,7 @@ pub fn startup_records(cells: &[f64], first: f64, block_cells: usize) -> Vec<Blo
 
 /// The cells at the end that u_s is averaged over: whole blocks, at most those that must agree; all there are while
 /// there is no whole block.
-pub fn stretch<'c>(cells: &'c [f64], stop: &Stop, blocks: usize) -> &'c [f64] {
+pub(crate) fn stretch<'c>(cells: &'c [f64], stop: &Stop, blocks: usize) -> &'c [f64] {
     let full = cells.len() / stop.block_cells * stop.block_cells;
     if full == 0 {
         return cells;
@@ -142,7 +142,7 @@ fn drift(cells: &[f64]) -> f64 {
 }
 
 /// Uncertainty of the u_s of the stretch [m/s]; `NaN` for fewer than two cells.
-pub fn uncertainty(cells: &[f64], stop: &Stop, blocks: usize) -> f64 {
+pub(crate) fn uncertainty(cells: &[f64], stop: &Stop, blocks: usize) -> f64 {
     let counted = stretch(cells, stop, blocks);
     let end = cells.len() / stop.block_cells * stop.block_cells;
     let before = &cells[..end.saturating_sub(counted.len()).min(cells.len())];

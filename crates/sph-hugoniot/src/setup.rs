@@ -52,6 +52,6 @@ fn search(search: Search, cell: f64) -> Search {
 
 /// What is left out of a plateau of `length` particle sizes between outlet and front: the front's own width, about two
 /// cells at D = 1 µm, and the layer that feels the outlet; less where the window is short.
-pub fn margins(length: f64) -> PlateauMargins {
+pub(crate) fn margins(length: f64) -> PlateauMargins {
     PlateauMargins { front: (0.45 * length).min(40.0), outlet: (0.15 * length).min(10.0) }
 }

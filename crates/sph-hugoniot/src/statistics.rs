@@ -36,7 +36,7 @@ fn independent_error(values: &[f64]) -> f64 {
 }
 
 /// Arithmetic mean, in the unit of the values.
-pub fn mean(values: &[f64]) -> f64 {
+pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
@@ -46,7 +46,7 @@ pub fn harmonic_mean(velocities: &[f64]) -> f64 {
 }
 
 /// Slope of the least-squares line through consecutive values, per value; zero for fewer than two.
-pub fn line_slope(values: &[f64]) -> f64 {
+pub(crate) fn line_slope(values: &[f64]) -> f64 {
     let (middle, center) = (0.5 * (values.len() as f64 - 1.0), mean(values));
     let (mut product, mut square) = (0.0, 0.0);
     for (k, value) in values.iter().enumerate() {
@@ -58,7 +58,7 @@ pub fn line_slope(values: &[f64]) -> f64 {
 }
 
 /// (greatest - least)/mean of the values: how far successive blocks disagree.
-pub fn relative_spread(values: &[f64]) -> f64 {
+pub(crate) fn relative_spread(values: &[f64]) -> f64 {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     (greatest - least) / mean(values).abs()

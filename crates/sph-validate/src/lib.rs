@@ -3,7 +3,7 @@
 //! A suite ([`suites`]) sets up one problem, runs it with the real program and measures it ([`metric`]) against a
 //! reference solution that shares no code with the particle method ([`mod@reference`]): the exact elastic-plastic Riemann
 //! solution, or a converged one-dimensional Lagrangian solution. The figures are held against gates ([`gate`]), which
-//! are data in `validation/<suite>/gates.ron`, and reported ([`report`], [`summary`], [`plots`]). The binary
+//! are data in `validation/<suite>/gates.ron`, and reported ([`report`], `summary`, `plots`). The binary
 //! `sph-validate` and the tests run the same code ([`runner`]).
 //!
 //! ```
@@ -27,15 +27,15 @@ pub mod error;
 pub mod gate;
 pub mod metric;
 pub mod outcome;
-pub mod page;
-pub mod plots;
-pub mod provenance;
+mod page;
+mod plots;
+mod provenance;
 pub mod reference;
 pub mod report;
-pub mod run;
+mod run;
 pub mod runner;
-pub mod store;
+mod store;
 pub mod suites;
-pub mod summary;
+mod summary;
 pub mod user;
 pub mod watch;

@@ -40,7 +40,7 @@ pub struct Case {
     pub output: Output,
 }
 
-/// When points are added between finished ones ([`crate::refine`]).
+/// When points are added between finished ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Refinement {
     /// Relative error of linear interpolation of u_s between neighbors [-].
@@ -70,7 +70,7 @@ impl Case {
     }
 
     /// The material if there is but one: theory of one solid with pores then holds.
-    pub fn single_material(&self) -> Option<&Material> {
+    pub(crate) fn single_material(&self) -> Option<&Material> {
         self.further_materials.is_empty().then_some(&self.material)
     }
 }
@@ -91,7 +91,7 @@ pub struct WindowCase {
 }
 
 impl WindowCase {
-    /// Length of the window at u_p [m/s], in cells: as given, else what the medium needs to relax ([`crate::zone`]).
+    /// Length of the window at u_p [m/s], in cells: as given, else what the medium needs to relax (`zone`).
     pub fn cells_at(&self, particle_velocity: f64) -> usize {
         self.cells.unwrap_or_else(|| self.automatic.cells_at(particle_velocity))
     }
@@ -117,18 +117,13 @@ impl Stop {
     ///
     /// While the front runs to its place it leaves half a window of compacted start-up material behind; that takes
     /// about as long to leave as the front took.
-    pub fn startup_at(&self, window_cells: usize) -> usize {
+    pub(crate) fn startup_at(&self, window_cells: usize) -> usize {
         self.startup_cells.unwrap_or(window_cells)
     }
 
-    /// Successive blocks that must agree in a window of `window_cells` cells.
-    pub fn blocks_at(&self, _window_cells: usize) -> usize {
-        self.blocks
-    }
-
     /// Fewest cells that a point feeds in a window of `window_cells` cells.
-    pub fn least_fed_cells(&self, window_cells: usize) -> usize {
-        self.startup_at(window_cells) + self.blocks_at(window_cells) * self.block_cells
+    pub(crate) fn least_fed_cells(&self, window_cells: usize) -> usize {
+        self.startup_at(window_cells) + self.blocks * self.block_cells
     }
 }
 

@@ -51,7 +51,7 @@ impl Medium {
     }
 
     /// True if there are voids beside pores on a lattice.
-    pub fn has_other_voids(&self) -> bool {
+    pub(crate) fn has_other_voids(&self) -> bool {
         let painted = self.layout.painted.iter().filter(|p| p.fill == Fill::Void).count();
         let base = match &self.layout.base {
             Base::Uniform(fill) => *fill == Fill::Void,

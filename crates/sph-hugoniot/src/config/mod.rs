@@ -1,12 +1,12 @@
 //! Case files: text → tree with places → schema → checked case in SI.
 //!
-//! Three layers, each with its own types: [`schema`] is the file as written, [`resolve`] decides what is required,
+//! Three layers, each with its own types: `schema` is the file as written, `resolve` decides what is required,
 //! what the defaults are and what must hold together, and [`case`] is what the rest of the program sees. Every fault of
-//! a file is reported at once, with its line and column ([`fault`]).
+//! a file is reported at once, with its line and column.
 
 pub mod case;
 pub mod medium;
-pub mod resolve;
+mod resolve;
 mod resolve_image;
 mod resolve_layout;
 mod resolve_material;
@@ -15,13 +15,15 @@ mod resolve_points;
 mod resolve_scheme;
 mod resolve_search;
 mod resolve_shapes;
-pub mod schema;
-pub mod schema_medium;
+mod schema;
+mod schema_medium;
 
 use std::path::Path;
 
 pub use case::Case;
-pub use sph_case::{CaseError, Fault, fault, field, units};
+pub(crate) use resolve::PARTICLE_VELOCITIES;
+pub use sph_case::{CaseError, Fault};
+pub(crate) use sph_case::{fault, field, units};
 
 /// Reads a case file.
 ///
@@ -35,7 +37,7 @@ pub fn load(path: &Path) -> Result<Case, CaseError> {
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with(path: &Path, particle_size: Option<f64>) -> Result<Case, CaseError> {
+pub(crate) fn load_with(path: &Path, particle_size: Option<f64>) -> Result<Case, CaseError> {
     let text = sph_case::text_of(path)?;
     let shown = path.display().to_string();
     let mut case = parse_with(&text, &shown, particle_size)?;

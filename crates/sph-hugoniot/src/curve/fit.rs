@@ -33,7 +33,7 @@ use super::least_squares::{self, Solution};
 /// Part of a normal distribution within one standard deviation.
 const ONE_SIGMA: f64 = 0.682_689_492_137;
 /// Confidence level of the band that is drawn [-].
-pub const BAND: f64 = 0.95;
+pub(crate) const BAND: f64 = 0.95;
 /// Places that a break is tried at between the outermost ones.
 const SCAN: usize = 120;
 

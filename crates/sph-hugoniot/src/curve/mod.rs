@@ -4,14 +4,14 @@
 //! |---|---|
 //! | [`points`] | the finished points in all planes, with errors |
 //! | [`fit`] | linear, quadratic and two-piece fits of u_s(u_p), with covariance and χ² |
-//! | [`theory`] | the solid, shut pores, snow-plow, P-α, and Boade's powder |
-//! | [`crush`] | a crush curve α(P) calibrated on the points |
+//! | `theory` | the solid, shut pores, snow-plow, P-α, and Boade's powder |
+//! | `crush` | a crush curve α(P) calibrated on the points |
 //! | [`measured`] | measured points from CSV files |
-//! | [`least_squares`] | the fits' own linear algebra |
+//! | `least_squares` | the fits' own linear algebra |
 
-pub mod crush;
+pub(crate) mod crush;
 pub mod fit;
-pub mod least_squares;
+pub(crate) mod least_squares;
 pub mod measured;
 pub mod points;
-pub mod theory;
+pub(crate) mod theory;

@@ -22,7 +22,7 @@ use super::layout::Fill;
 pub const MAX_PIXELS: u64 = 1 << 22;
 
 /// Memory that the PNG decoder may take for itself: rows, palette, texts and profiles beside the pixels [bytes].
-pub const MAX_DECODER_BYTES: usize = 64 << 20;
+pub(crate) const MAX_DECODER_BYTES: usize = 64 << 20;
 
 /// What happens at the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -55,7 +55,7 @@ impl GrayImage {
         Self::decode(BufReader::new(file)).map_err(|reason| format!("{shown}: {reason}"))
     }
 
-    /// Reads a picture in PNG format. Memory stays within [`MAX_DECODER_BYTES`] and eight bytes a pixel.
+    /// Reads a picture in PNG format. Memory stays within `MAX_DECODER_BYTES` and eight bytes a pixel.
     ///
     /// # Errors
     /// If it is no PNG, is damaged, or is too large.

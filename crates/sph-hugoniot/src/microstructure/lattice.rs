@@ -33,7 +33,7 @@ pub(super) fn points(medium: &Medium) -> Vec<DVec2> {
 }
 
 /// Centers of the pores of one cell, for pores on a lattice: midway between particles when their number allows.
-pub fn pore_centers(pores: Pores, cell: DVec2) -> Vec<DVec2> {
+pub(crate) fn pore_centers(pores: Pores, cell: DVec2) -> Vec<DVec2> {
     let at = |f: f64| f * cell;
     match pores {
         Pores::None | Pores::Placed => vec![],

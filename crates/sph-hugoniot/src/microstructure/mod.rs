@@ -17,17 +17,17 @@ mod cut;
 pub mod image;
 mod lattice;
 pub mod layout;
-pub mod measure;
-pub mod picture;
+pub(crate) mod measure;
+pub(crate) mod picture;
 pub mod placement;
-pub mod relax;
+pub(crate) mod relax;
 pub mod shape;
 pub mod spheres;
 
 use glam::DVec2;
 use sph_core::{Dim2, Particle};
 
-pub use lattice::pore_centers;
+pub(crate) use lattice::pore_centers;
 
 use crate::config::Case;
 use crate::config::case::{Medium, Packing};

@@ -102,7 +102,7 @@ impl Shape {
     }
 
     /// No point of the shape or its images is nearer than this [m]: the distance to the boxes around them.
-    pub fn least_distance(&self, point: DVec2, cell: DVec2) -> f64 {
+    pub(crate) fn least_distance(&self, point: DVec2, cell: DVec2) -> f64 {
         let (middle, half) = self.bounds();
         let offset = point - middle;
         let nearest = (offset - cell * (offset / cell).round()).abs();
@@ -151,7 +151,7 @@ impl Shape {
     }
 
     /// Points on the boundary of the shape [m], close enough together to tell gaps from others; none of a layer.
-    pub fn outline(&self) -> Vec<DVec2> {
+    pub(crate) fn outline(&self) -> Vec<DVec2> {
         let round = |center: DVec2, a: DVec2, b: DVec2| {
             let turn = |k: i32| std::f64::consts::TAU * f64::from(k) / 96.0;
             (0..96).map(|k| center + a * libm::cos(turn(k)) + b * libm::sin(turn(k))).collect()
@@ -171,7 +171,7 @@ impl Shape {
     }
 
     /// True if the gap to another shape and its images is no narrower than this [m].
-    pub fn keeps_gap(&self, other: &Self, gap: f64, cell: DVec2) -> bool {
+    pub(crate) fn keeps_gap(&self, other: &Self, gap: f64, cell: DVec2) -> bool {
         if matches!(self, Self::Circle { .. }) || matches!(other, Self::Circle { .. }) {
             return self.gap(other, cell) >= gap;
         }

@@ -11,7 +11,7 @@ const REACH: f64 = 1.2;
 const OVERLAP: f64 = 1.2;
 
 /// Edge [m] of the square that a particle of this mass [kg/m] and density [kg/m³] is drawn in.
-pub fn drawn_size(mass: f64, density: f64) -> f64 {
+pub(crate) fn drawn_size(mass: f64, density: f64) -> f64 {
     OVERLAP * (mass / density).sqrt()
 }
 

@@ -2,11 +2,14 @@
 //! and the particles at the end.
 
 mod fields;
-pub mod precursor;
-pub mod profile;
+pub(crate) mod precursor;
+pub(crate) mod profile;
 mod states;
 
-pub use fields::{Fields, drawn_size};
-pub use precursor::{Precursor, PrecursorWatch};
-pub use profile::{Bin, FrontProfile, ProfileGrid};
+pub use fields::Fields;
+pub(crate) use fields::drawn_size;
+pub use precursor::Precursor;
+pub(crate) use precursor::PrecursorWatch;
+pub use profile::Bin;
+pub(crate) use profile::{FrontProfile, ProfileGrid};
 pub use states::{MeanState, States, Zone};

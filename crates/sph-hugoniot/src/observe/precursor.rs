@@ -93,7 +93,7 @@ struct Look {
 
 /// Watches the precursor until it comes to the inlet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PrecursorWatch {
+pub(crate) struct PrecursorWatch {
     looks: Vec<Look>,
     end: Option<Result<Precursor, String>>,
 }

@@ -14,7 +14,7 @@ const SUMS: usize = 9;
 
 /// Where the bins stand: `behind` of them at ξ < 0, `ahead` at ξ > 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ProfileGrid {
+pub(crate) struct ProfileGrid {
     /// Width of a bin [m].
     pub bin: f64,
     /// Bins behind the front.
@@ -49,7 +49,7 @@ struct Sums {
 
 /// A profile under way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrontProfile {
+pub(crate) struct FrontProfile {
     grid: ProfileGrid,
     cross_section: f64,
     sums: Vec<Sums>,

@@ -126,7 +126,7 @@ pub struct States {
 impl States {
     /// Reads both states from a profile; `None` where the window leaves no room for one of them. `cell` is the edge of
     /// the medium's cell, `particle_size` D [m]; margins in D.
-    pub fn read(
+    pub(crate) fn read(
         profile: &FrontProfile,
         margins: &PlateauMargins,
         cell: f64,

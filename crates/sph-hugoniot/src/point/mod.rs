@@ -2,7 +2,7 @@
 //!
 //! 1. **Start-up.** The window is filled with the medium, the outlet is the piston, the front runs to its place, and what
 //!    was compacted on the way leaves through the outlet. Meanwhile the elastic precursor passes and is read
-//!    ([`crate::observe::PrecursorWatch`]). With `search: Bisection` the search runs too.
+//!    (`observe::PrecursorWatch`). With `search: Bisection` the search runs too.
 //! 2. **Blocks.** From then on the front's way through the medium is cut into blocks of whole cells. After each block
 //!    [`crate::settle`] says whether the point has settled, and why not; the blocks that agree give u_s, its uncertainty
 //!    and the averaged profile. Earlier blocks are dropped.
@@ -32,7 +32,7 @@ use crate::restart::Keeper;
 use crate::series::SeriesLog;
 use crate::settle::{self, BlockRecord, Decision};
 use crate::setup;
-use crate::status::Way;
+pub use crate::status::Way;
 
 /// Cells that the front sweeps between two looks at the precursor: it runs several times as fast.
 const PRECURSOR_LOOKS: f64 = 0.05;
@@ -70,7 +70,7 @@ pub fn run(case: &Case, sample: &Sample, particle_velocity: f64, control: &dyn C
 ///
 /// # Errors
 /// If what is kept of the point cannot be read or written.
-pub fn run_kept(
+pub(crate) fn run_kept(
     case: &Case,
     sample: &Sample,
     particle_velocity: f64,
@@ -116,7 +116,7 @@ struct Point<'c> {
 
 /// How far a point has come, beside its window.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PointProgress {
+pub(crate) struct PointProgress {
     last_look: Option<Observation>,
     /// Place of the front, smoothed over [`FRONT_MEMORY`] [m].
     mean_front: f64,
@@ -338,7 +338,7 @@ impl<'c> Point<'c> {
 
     /// Blocks that must agree.
     fn blocks(&self) -> usize {
-        self.case.stop.blocks_at(self.case.window.cells_at(self.particle_velocity))
+        self.case.stop.blocks
     }
 
     /// Cells that u_s is averaged over.

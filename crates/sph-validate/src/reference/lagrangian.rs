@@ -320,7 +320,7 @@ impl<'a> Mesh<'a> {
 }
 
 /// A column over the nodes at `place` [m], linear between them; zero outside of them, repeated where it is periodic.
-pub fn interpolated(nodes: &[f64], column: &[f64], is_periodic: bool, place: f64) -> f64 {
+pub(crate) fn interpolated(nodes: &[f64], column: &[f64], is_periodic: bool, place: f64) -> f64 {
     let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
     let place = if is_periodic { first + (place - first).rem_euclid(last - first) } else { place };
     let j = nodes.partition_point(|&r| r <= place);

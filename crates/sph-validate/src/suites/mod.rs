@@ -11,8 +11,8 @@
 //!   angle, `"3d"`; empty where there is one only), scheme, resolution. At least three resolutions a variant in the full
 //!   tier, so that there is an order;
 //! * [`Suite::work`]: particle-steps of a run, an estimate for the time left and for the order of runs;
-//! * [`Suite::run`]: one run. Set up particles, make a [`Run`](crate::run::Run) (or a window), step, measure. Ends with
-//!   [`Run::outcome`](crate::run::Run::outcome), which adds what was conserved and what it cost. A suite with a moving
+//! * [`Suite::run`]: one run. Set up particles, make a `Run` (`run.rs`) (or a window), step, measure. Ends with
+//!   `Run::outcome`, which adds what was conserved and what it cost. A suite with a moving
 //!   window makes the [`Outcome`] itself; its [`Conservation`](crate::conservation::Conservation) is the closure of the
 //!   window's ledger, and it asks [`Watch::check`](crate::watch::Watch::check) in each step;
 //! * [`Suite::pictures`]: plots of all of its outcomes. What is drawn comes from the outcomes (figures, curves, fields),
@@ -32,26 +32,26 @@
 //! suite. A suite draws no random number without a fixed seed: a run gives the same bits each time, on any number of
 //! threads.
 
-pub mod acoustic;
-pub mod collapse;
-pub mod disorder;
-pub mod gas;
-pub mod piston;
-pub mod plate_impact;
-pub mod riemann;
-pub mod rigid_rotation;
+mod acoustic;
+mod collapse;
+mod disorder;
+mod gas;
+pub(crate) mod piston;
+mod plate_impact;
+pub(crate) mod riemann;
+mod rigid_rotation;
 mod shell_stop;
-pub mod shells;
-pub mod sound_wave;
-pub mod spall;
-pub mod spinning_disc;
+mod shells;
+pub(crate) mod sound_wave;
+mod spall;
+mod spinning_disc;
 mod strip;
-pub mod taylor_bar;
-pub mod verny;
-pub mod vibration;
+mod taylor_bar;
+pub(crate) mod verny;
+mod vibration;
 mod window;
-pub mod window_porous;
-pub mod window_solid;
+mod window_porous;
+pub(crate) mod window_solid;
 
 use sph_io::field_image::FieldImage;
 use sph_io::plot::Figure;

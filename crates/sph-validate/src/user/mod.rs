@@ -1,13 +1,13 @@
 //! Problems of the user's own: a case file → a suite whose exact reference is computed, not looked up.
 //!
-//! Two stages, as for every case file of the house: [`schema`] is the file as written, `resolve` makes a checked problem
+//! Two stages, as for every case file of the house: `schema` is the file as written, `resolve` makes a checked problem
 //! in SI, or a list of all faults with their places. What the exact solution refuses (vacuum, overdriven shock, nothing
 //! that moves, no plastic wave) is a fault of the problem, with the condition that it breaks.
 //!
 //! A user's problem has no gates: its figures are shown beside their references, with the observed orders.
 
 mod resolve;
-pub mod schema;
+mod schema;
 
 use std::path::Path;
 

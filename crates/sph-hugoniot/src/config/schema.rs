@@ -354,7 +354,7 @@ pub struct StopSchema {
 /// Cells fed before the first block.
 #[derive(Debug, Deserialize)]
 pub enum StartupSchema {
-    /// From the window's length.
+    /// Until the start-up material has left.
     Auto,
     /// Number of cells.
     Cells(Field<Count>),

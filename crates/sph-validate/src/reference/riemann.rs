@@ -8,9 +8,10 @@
 //! ```
 //!
 //! A side of the contact carries an elastic wave and, when it reaches the yield surface, a slower plastic wave. On a
-//! branch of modulus K the sound speed is c = sqrt(K V). Compression is a jump, Δu² = Δσ ΔV (paper eqs. (28), (29));
-//! release is an isentropic fan with u ∓ 2c constant, because c falls as V falls: the release *jump* of the paper
-//! (eqs. (33), (36)) violates the entropy condition, but is offered for comparison with its numbers.
+//! branch of modulus K the sound speed is c = sqrt(K V). Compression is a jump, Δu² = Δσ ΔV (paper eqs. (28), (29)).
+//! Release is an isentropic fan: u - 2c is constant through one that runs to the left, u + 2c through one to the right, and
+//! its tail is slower than its head, because c grows with V. The release *jump* of the paper (below eq. (33), and eq. (36))
+//! violates the entropy condition, but is offered for comparison with its numbers.
 //!
 //! Stress is positive in tension. Validity: smooth equation of state without thermal pressure, plastic shock slower
 //! than its precursor, bonded contact (tension at the contact is carried).

@@ -1,3 +1,5 @@
+//! The steps of the search on a front that is known, with and without noise.
+
 use super::*;
 
 const SHOCK: f64 = 940.0;

@@ -39,8 +39,7 @@ pub struct Arguments {
 
 /// Exit status 1 if a target found something, or there is no cargo-fuzz.
 pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let there = process::cargo().args(["fuzz", "--version"]).output().is_ok_and(|o| o.status.success());
-    if !there {
+    if !process::has_subcommand("fuzz") {
         eprintln!("error: cargo-fuzz is not installed; hint: cargo install --locked cargo-fuzz");
         return Ok(ExitCode::FAILURE);
     }

@@ -22,3 +22,8 @@ pub fn run(command: &mut Command) -> anyhow::Result<ExitCode> {
         command.status().with_context(|| format!("cannot start {}", command.get_program().display()))?;
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
+
+/// Whether cargo has a subcommand that is not its own.
+pub fn has_subcommand(name: &str) -> bool {
+    cargo().args([name, "--version"]).output().is_ok_and(|output| output.status.success())
+}

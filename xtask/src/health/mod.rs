@@ -5,17 +5,21 @@
 //! * with `--full`: the packed crates build by themselves (`cargo publish --dry-run`), the oldest versions that the
 //!   manifests allow build, public interfaces are compared with those of an earlier commit, and known advisories are
 //!   looked up. A step that could not be made, for want of a tool or of the advisory database, is told with what helps,
-//!   and does not count as passed.
+//!   and does not count as passed;
+//! * with `--advisories`: known advisories are looked up in a copy of their database, without a network ([`advisories`]).
 
+mod advisories;
 mod licenses;
 mod packages;
 mod releases;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Options of the task.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  cargo xtask health\n  cargo xtask health --full --baseline v0.1.0")]
+#[command(after_help = "Examples:\n  cargo xtask health\n  cargo xtask health --full --baseline v0.1.0
+  cargo xtask health --advisories ../advisory-db")]
 pub struct Arguments {
     /// Also what takes minutes or a further tool: dry run of publishing, oldest dependencies, interfaces, advisories.
     #[arg(long)]
@@ -23,6 +27,9 @@ pub struct Arguments {
     /// Commit or tag whose public interfaces today's are compared with; the latest tag by itself.
     #[arg(long, value_name = "REVISION", requires = "full")]
     baseline: Option<String>,
+    /// A copy of the RustSec database to look advisories up in, without a network; yanked versions are then not looked for.
+    #[arg(long, value_name = "FOLDER")]
+    advisories: Option<PathBuf>,
 }
 
 /// What a step found.
@@ -44,7 +51,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         findings.push(releases::dry_run()?);
         findings.push(releases::oldest_dependencies()?);
         findings.push(releases::interfaces(arguments.baseline.as_deref())?);
-        findings.push(releases::advisories()?);
+    }
+    if arguments.full || arguments.advisories.is_some() {
+        findings.push(advisories::check(arguments.advisories.as_deref())?);
     }
     for finding in &findings {
         println!("{:<22} {:<9} {}", finding.name, finding.verdict(), finding.said);
@@ -63,6 +72,11 @@ impl Finding {
     /// A step that was not made is not passed.
     fn not_made(name: &'static str, said: String, why: String) -> Self {
         Self { name, faults: Vec::new(), not_made: Some(why), said }
+    }
+
+    fn without_tool(name: &'static str, tool: &str) -> Self {
+        let why = format!("{tool} is not installed; hint: cargo install --locked {tool}");
+        Self::not_made(name, tool.to_owned(), why)
     }
 
     fn is_well(&self) -> bool {

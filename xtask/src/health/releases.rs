@@ -43,8 +43,8 @@ pub(super) fn interfaces(baseline: Option<&str>) -> anyhow::Result<Finding> {
             vec![],
         ));
     };
-    if !is_installed("semver-checks") {
-        return Ok(missing(name, "cargo-semver-checks"));
+    if !process::has_subcommand("semver-checks") {
+        return Ok(Finding::without_tool(name, "cargo-semver-checks"));
     }
     let mut command = process::cargo();
     command.args(["semver-checks", "--baseline-rev", &baseline]).current_dir(process::root());
@@ -60,37 +60,6 @@ fn latest_tag() -> Option<String> {
         command.args(["describe", "--tags", "--abbrev=0"]).current_dir(process::root()).output().ok()?;
     let tag = String::from_utf8(output.stdout).ok()?.trim().to_owned();
     (output.status.success() && !tag.is_empty()).then_some(tag)
-}
-
-/// What cargo-audit says where it has no database to look into.
-const NO_DATABASE: &str = "couldn't fetch advisory database";
-
-/// Looks known advisories up.
-pub(super) fn advisories() -> anyhow::Result<Finding> {
-    let name = "advisories";
-    if !is_installed("audit") {
-        return Ok(missing(name, "cargo-audit"));
-    }
-    let mut command = process::cargo();
-    let output = command.args(["audit", "--color", "never"]).current_dir(process::root()).output()?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    print!("{}", String::from_utf8_lossy(&output.stdout));
-    eprint!("{said}");
-    if said.contains(NO_DATABASE) {
-        let why = "the advisory database is out of reach; hint: with a network, or a clone of \
-                   https://github.com/RustSec/advisory-db in ~/.cargo/advisory-db";
-        return Ok(Finding::not_made(name, "cargo audit".to_owned(), why.to_owned()));
-    }
-    Ok(Finding::of(name, "cargo audit".to_owned(), fault("cargo audit", output.status)))
-}
-
-fn is_installed(subcommand: &str) -> bool {
-    process::cargo().args([subcommand, "--version"]).output().is_ok_and(|output| output.status.success())
-}
-
-fn missing(name: &'static str, tool: &str) -> Finding {
-    let why = format!("{tool} is not installed; hint: cargo install --locked {tool}");
-    Finding::not_made(name, tool.to_owned(), why)
 }
 
 fn step(name: &'static str, command: &mut Command) -> anyhow::Result<Finding> {

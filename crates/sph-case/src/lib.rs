@@ -30,9 +30,9 @@
 pub mod check;
 pub mod fault;
 pub mod field;
-pub mod node;
-pub mod syntax;
-pub mod tree;
+mod node;
+mod syntax;
+mod tree;
 pub mod units;
 
 use std::path::Path;

@@ -27,7 +27,7 @@ const PARTICLE_STEPS_PER_SECOND: f64 = 2.0e6;
 
 /// What one point will need.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PointEstimate {
+pub(crate) struct PointEstimate {
     /// Particle velocity u_p [m/s].
     pub particle_velocity: f64,
     /// Guess of the shock velocity u_s [m/s].
@@ -66,7 +66,7 @@ pub fn shock_velocity(case: &Case, porosity: f64, particle_velocity: f64) -> f64
 }
 
 /// What one point will need.
-pub fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> PointEstimate {
+pub(crate) fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> PointEstimate {
     let u_s = shock_velocity(case, sample.porosity, particle_velocity);
     let window_cells = case.window.cells_at(particle_velocity);
     // Behind the front the particles stand closer, by up to m; half of the window on average.
@@ -113,7 +113,7 @@ fn times(case: &Case, window_cells: usize, shock_velocity: f64, particle_velocit
 }
 
 /// What all points need on `threads` cores: (time [s], memory [bytes]).
-pub fn total(points: &[PointEstimate], threads: usize) -> (f64, f64) {
+pub(crate) fn total(points: &[PointEstimate], threads: usize) -> (f64, f64) {
     let work: f64 = points.iter().map(|p| p.seconds).sum();
     let longest = points.iter().map(|p| p.seconds).fold(0.0, f64::max);
     let mut bytes: Vec<f64> = points.iter().map(|p| p.bytes).collect();
@@ -126,7 +126,7 @@ pub fn total(points: &[PointEstimate], threads: usize) -> (f64, f64) {
 }
 
 /// What all points will have on disk while `threads` cores run them [bytes].
-pub fn disk(points: &[PointEstimate], threads: usize) -> f64 {
+pub(crate) fn disk(points: &[PointEstimate], threads: usize) -> f64 {
     let kept = |p: &PointEstimate| DISK_OF_POINT + DISK_OF_PARTICLE * p.particles as f64 + p.snapshot_bytes;
     let states = total(points, threads).1 / BYTES_PER_PARTICLE * DISK_OF_STATES;
     DISK_OF_RUN + points.iter().map(kept).sum::<f64>() + states

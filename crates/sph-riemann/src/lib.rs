@@ -27,6 +27,30 @@
 //! have the same bits for any number of threads and any set of instructions, and after a restart; a step between two
 //! rebuilds of the lists allocates nothing.
 //!
+//! A block of copper that flies apart, a step of it:
+//!
+//! ```
+//! use glam::DVec2;
+//! use sph_core::{Dim2, Domain, Particle, Particles};
+//! use sph_riemann::{Settings, Simulation};
+//!
+//! let copper = sph_materials::library::material("porous-copper")?;
+//! let (size, density) = (1e-6, copper.reference_density);
+//! let mut particles = Particles::<Dim2>::default();
+//! for k in 0..100_u64 {
+//!     let place = DVec2::new((k % 10) as f64 - 4.5, (k / 10) as f64 - 4.5) * size;
+//!     let at_rest = Particle::at_rest(k, place, density * size * size, size, density);
+//!     particles.push(Particle { velocity: place * 1e6, ..at_rest });
+//! }
+//! let mut simulation = Simulation::new(Domain::open(), vec![copper], particles, Settings::default())?;
+//! let energy = |s: &Simulation<Dim2>| s.totals().kinetic_energy + s.totals().internal_energy;
+//! let before = energy(&simulation);
+//! let report = simulation.step()?;
+//! assert!(report.time_step > 0.0);
+//! assert!((energy(&simulation) / before - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Source: Rublev & Murzov, arXiv 2410.14646; Parshikov & Medin, J. Comput. Phys. 180 (2002) 358.
 
 mod check;

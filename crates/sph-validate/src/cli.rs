@@ -42,8 +42,8 @@ const EXAMPLES: &str = "Examples:
 
 Each run is kept in DIR/runs as soon as it has ended. After Ctrl-C, a crash or a power cut --resume takes over those that
 this program would give again, to the last bit, and computes the others; runs of other code are computed again.
-Exit codes: 0 all gates passed (but for misses that are known), 2 bad input, 3 a run failed, 4 a gate was missed (with --strict:
-or a miss that is known passes), 130 interrupted";
+Exit codes: 0 all gates passed (but for misses that are known), 1 a file could not be written, 2 bad input, 3 a run failed,
+4 a gate was missed (with --strict: or a miss that is known passes), 130 interrupted";
 
 /// Runs problems with known answers, measures the errors and holds them against their gates.
 #[derive(Debug, Parser)]

@@ -93,9 +93,11 @@ pub enum ValidateError {
 }
 
 impl ValidateError {
-    /// Exit status of the program: 2 for bad input, 3 for a numerical failure, 130 when interrupted.
+    /// Exit status of the program: 1 for a file or folder that cannot be written, 2 for bad input, 3 for a numerical failure,
+    /// 130 when interrupted.
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::Output { .. } => 1,
             Self::Numerical { .. } | Self::Window { .. } | Self::NotReached { .. } => 3,
             Self::Interrupted => 130,
             _ => 2,

@@ -32,10 +32,10 @@ fn unknown_names_list_what_there_is() {
 }
 
 #[test]
-fn folder_that_cannot_be_made_is_bad_input() {
+fn folder_that_cannot_be_made_is_file_trouble() {
     let file = tempfile::NamedTempFile::new().expect("a file");
     let output = validate(&["--suite", "riemann"], &file.path().join("below-a-file"));
-    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(output.status.code(), Some(1));
     assert!(error_text(&output).contains("below-a-file"), "{}", error_text(&output));
 }
 

@@ -152,7 +152,7 @@ impl<D: Dimension> Feed<D> {
     }
 
     /// Place of the next particle [m].
-    pub fn next_place(&self) -> f64 {
+    fn next_place(&self) -> f64 {
         let offset = self.sample.particles.position[0][self.state.cursor] - self.sample.cell.lower[0];
         self.state.origin + offset
     }

@@ -23,6 +23,31 @@
 //! | [`ledger`] | mass, momentum and energy in and out |
 //! | [`state`] | what a restart needs |
 //!
+//! A shock through a lattice with one pore a cell, and the books of its window (the README follows it to its speed):
+//!
+//! ```
+//! use sph_core::{Components, Dim2, Dimension, Domain, Particle, Particles};
+//! use sph_riemann::Settings;
+//! use sph_window::{FeedSample, Window, WindowSettings};
+//!
+//! let copper = sph_materials::library::material("porous-copper")?;
+//! let (size, density) = (2e-6, copper.reference_density);
+//! let mut particles = Particles::<Dim2>::default();
+//! for k in (0..100_u64).filter(|k| !matches!(k, 44 | 45 | 54 | 55)) {
+//!     let place = Dim2::vector(|axis| size * ([k / 10, k % 10][axis] as f64 + 0.5));
+//!     particles.push(Particle::at_rest(k, place, density * size * size, size, density));
+//! }
+//! let cell = Domain::new(Dim2::vector(|_| 0.0), Dim2::vector(|_| 10.0 * size), Components::from_fn(|_| true));
+//! let sample = FeedSample::new(particles, cell)?;
+//! let settings = WindowSettings::new(8.0 * sample.period(), 250.0); // length of the box [m], u_p [m/s]
+//! let mut window = Window::new(sample, vec![copper], Settings::default(), settings)?;
+//! for _ in 0..50 {
+//!     window.step()?;
+//! }
+//! assert!(window.ledger_residual() < 1e-12); // mass, momentum and energy in and out
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! The crate does not know sweeps, case files or where results go.
 //!
 //! # Source

@@ -1,8 +1,7 @@
 //! `sph-validate`: runs the problems with known answers and holds the figures against their gates.
 //!
-//! Exit status: 0 when all gates passed (but for known misses), 2 for bad input, 3 for a numerical failure, 4 when a gate
-//! was missed, 130 when
-//! interrupted.
+//! Exit status: 0 when all gates passed (but for known misses), 1 when a file could not be written, 2 for bad input, 3 for
+//! a numerical failure, 4 when a gate was missed, 130 when interrupted.
 
 use std::process::ExitCode;
 

@@ -8,11 +8,12 @@
 //! u^(n+1)   = u^(n+1/2) + ½ τ f^(n+1)/m
 //! ```
 //!
-//! The strain rates of a zone of volume A (per unit depth, per unit depth and radian, per steradian) at the half step
+//! The strain rates of a zone of volume A (per unit area; per unit depth and radian; per steradian) at the half step
 //! are D_rr = Δu/Δr and k D_θθ = d ln A/dt - D_rr, with k = 0, 1, 2 hoop directions in the plane, around an axis and
 //! around a point. Nodal forces follow from virtual work, δW = (σ_rr δD_rr + k σ_θθ δD_θθ) A, so that the scheme
-//! conserves momentum (planar) and its energy error is that of the time step alone. dS/dt = 2G (D - tr D/3) with von Mises return; de = σ : D dt/ρ with the mean
-//! stress of the step. Second order in smooth flow; shocks need the artificial viscosity, which is zero by default.
+//! conserves momentum (planar) and its energy error is that of the time step alone. dS/dt = 2G (D - tr D/3) with von
+//! Mises return; de = σ : D dt/ρ with the mean stress of the step. Second order in smooth flow; shocks need the artificial
+//! viscosity, which is zero by default.
 //!
 //! Validity: no rotation (one dimension), constant shear modulus, surfaces free of traction or fixed.
 //!
@@ -202,7 +203,8 @@ impl<'a> Mesh<'a> {
         sum / self.zone_mass.iter().sum::<f64>()
     }
 
-    /// Kinetic and internal energy, per unit depth (and radian) [J/m].
+    /// Kinetic and internal energy: per unit area in the plane [J/m²], per unit depth and radian around an axis [J/m], per
+    /// steradian around a point [J].
     pub fn energy(&self) -> f64 {
         // The ends of a periodic mesh are one node: it counts once.
         let nodes = self.velocity.len() - usize::from(self.scheme.ends == Ends::Periodic);
@@ -331,7 +333,7 @@ pub(crate) fn interpolated(nodes: &[f64], column: &[f64], is_periodic: bool, pla
     column[j - 1] + weight * (column[j] - column[j - 1])
 }
 
-/// Volume of a zone per unit depth, per unit depth and radian, or per steradian.
+/// Volume of a zone per unit area, per unit depth and radian, or per steradian.
 fn area(symmetry: Symmetry, r: &[f64]) -> f64 {
     match symmetry {
         Symmetry::Planar => r[1] - r[0],

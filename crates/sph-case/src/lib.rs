@@ -52,22 +52,27 @@ const MAX_FILE: u64 = 1 << 20;
 /// A file that cannot be read, is too large, or is no text.
 pub fn text_of(path: &Path) -> Result<String, CaseError> {
     let shown = path.display().to_string();
-    let refuse = |message: String| CaseError {
-        path: shown.clone(),
-        text: String::new(),
-        faults: vec![Fault::new(0..0, message)],
-        left_out: 0,
+    let refuse = |message: String, hint: Option<String>| {
+        let fault = Fault::new(0..0, message);
+        let faults = vec![hint.into_iter().fold(fault, Fault::hint)];
+        CaseError { path: shown.clone(), text: String::new(), faults, left_out: 0 }
     };
-    let metadata =
-        std::fs::metadata(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
+    let unreadable =
+        |error: std::io::Error| refuse(format!("the case file cannot be read: {error}"), hint(path, &error));
+    let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if metadata.len() > MAX_FILE {
-        return Err(refuse(format!(
-            "the case file has {} bytes; at most {MAX_FILE} are read",
-            metadata.len()
-        )));
+        let size = metadata.len();
+        return Err(refuse(format!("the case file has {size} bytes; at most {MAX_FILE} are read"), None));
     }
-    let bytes = std::fs::read(path).map_err(|e| refuse(format!("the case file cannot be read: {e}")))?;
-    String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}")))
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}"), None))
+}
+
+/// From where a file that is not there was looked for.
+fn hint(path: &Path, error: &std::io::Error) -> Option<String> {
+    let is_missing = error.kind() == std::io::ErrorKind::NotFound && path.is_relative();
+    let here = std::env::current_dir().ok().filter(|_| is_missing)?;
+    Some(format!("the path is relative to {}", here.display()))
 }
 
 /// Reads a case from text: into its schema `S`, and with `resolve` (schema, place of the whole, list of faults) into

@@ -56,7 +56,7 @@ pub fn levels() -> Vec<u8> {
 
 /// Writes the picture.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args().nth(1).ok_or("name the PNG file to write")?;
+    let path = std::env::args().nth(1).ok_or("usage: micrograph FILE.png")?;
     let file = BufWriter::new(std::fs::File::create(path)?);
     let mut encoder = png::Encoder::new(file, SIZE.0 as u32, SIZE.1 as u32);
     encoder.set_color(png::ColorType::Grayscale);

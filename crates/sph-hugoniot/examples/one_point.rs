@@ -30,7 +30,12 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let states = outcome.states.ok_or("the window left no room for the states")?;
     println!("σ_HEL = {:.3} GPa, Δσ = {:.3} GPa", -states.ahead.stress / 1e9, states.stress_jump() / 1e9);
-    println!("pores are {}, residuals {:?}", states.zone(), outcome.residuals);
+    println!("pores are {}", states.zone());
+    if let Some(residuals) = outcome.residuals {
+        let percent = [residuals.mass, residuals.momentum, residuals.energy].map(|part| 100.0 * part);
+        let [mass, momentum, energy] = percent;
+        println!("jump conditions: mass {mass:+.2} %, momentum {momentum:+.2} %, energy {energy:+.2} %");
+    }
     outcome.warnings.iter().for_each(|warning| println!("warning: {warning}"));
     if (outcome.shock_velocity / 1120.0 - 1.0).abs() > 0.01 {
         return Err("u_s is not what the jump conditions leave".into());

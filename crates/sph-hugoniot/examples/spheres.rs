@@ -4,7 +4,7 @@
 //! what the jump conditions leave for shut pores.
 //!
 //! `cargo run --release -p sph-hugoniot --example spheres -- FOLDER` writes pictures and .vtp files into the folder, and takes
-//! about a minute of one core.
+//! one to two minutes of one core.
 
 use std::path::Path;
 

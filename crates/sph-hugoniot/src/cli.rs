@@ -74,8 +74,8 @@ pub enum Command {
         #[arg(long)]
         json: bool,
         /// Cores that the time is estimated for; default: all
-        #[arg(long, value_name = "N")]
-        threads: Option<usize>,
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
         /// PNG file for the picture of the sample; default: sample.png in the case's folder of results
         #[arg(long, value_name = "FILE")]
         picture: Option<PathBuf>,
@@ -97,8 +97,8 @@ pub enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Cores to use; default: all
-        #[arg(long, value_name = "N")]
-        threads: Option<usize>,
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
         /// Go on with an earlier run in the folder: finished points are kept, the others go on where they were
         #[arg(long, conflicts_with = "replace")]
         resume: bool,
@@ -199,7 +199,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
                 (_, true) => Earlier::Replace,
                 _ => Earlier::Refuse,
             };
-            let threads = threads.unwrap_or_else(available_threads).clamp(1, 1024);
+            let threads = threads.map_or_else(available_threads, usize::from);
             let keep_every = Duration::from_secs_f64(keep_every);
             let folder = out.unwrap_or_default();
             let go_on = String::new();
@@ -252,10 +252,12 @@ fn load(path: &Path, color: bool) -> Option<config::Case> {
 /// Tells how far the run in a folder is.
 fn show_status(folder: &Path, json: bool) -> anyhow::Result<u8> {
     let Some(found) = status::read(folder)? else {
-        let folder = folder.display();
-        eprintln!(
-            "error: {folder}: no run has written here; hint: the folder of results, as `hugoniot check` names it"
-        );
+        let below = status::runs_below(folder);
+        let hint = match below.is_empty() {
+            true => "the folder of results, as `hugoniot check` names it".to_owned(),
+            false => format!("the folder of one run, such as {}", below.join(", ")),
+        };
+        eprintln!("error: {}: no run has written here; hint: {hint}", folder.display());
         return Ok(BAD_INPUT);
     };
     if json {
@@ -269,7 +271,7 @@ fn show_status(folder: &Path, json: bool) -> anyhow::Result<u8> {
 fn check_case(
     path: &Path,
     json: bool,
-    threads: Option<usize>,
+    threads: Option<u16>,
     picture: Option<PathBuf>,
     color: bool,
 ) -> anyhow::Result<u8> {
@@ -279,7 +281,7 @@ fn check_case(
         return Ok(BAD_INPUT);
     }
     let picture = picture.unwrap_or_else(|| Path::new(&case.output.directory).join("sample.png"));
-    let mut check = check::Check::new(case, threads.unwrap_or_else(available_threads).max(1));
+    let mut check = check::Check::new(case, threads.map_or_else(available_threads, usize::from));
     check.draw(&picture);
     if json {
         println!("{}", serde_json::to_string_pretty(&check)?);

@@ -179,7 +179,7 @@ fn round(
     let costs: Vec<f64> = sweep.points.iter().map(cost).collect();
     let mode = if options.quiet { Mode::Quiet } else { Mode::Auto };
     let more = if earlier.is_empty() { "" } else { "more " };
-    let label = format!("{}, {} {more}points", sweep.case.name, sweep.points.len());
+    let label = format!("{}, {}", sweep.case.name, counted(sweep.points.len(), &format!("{more}point")));
     let watcher = Watcher {
         sweep,
         earlier: &earlier,
@@ -200,6 +200,11 @@ fn round(
     all.extend(new);
     all.sort_by(|a, b| a.particle_velocity.total_cmp(&b.particle_velocity));
     Ok(all)
+}
+
+/// `1 point`, `2 points`.
+fn counted(count: usize, word: &str) -> String {
+    format!("{count} {word}{}", if count == 1 { "" } else { "s" })
 }
 
 fn end_of(outcomes: &[&PointOutcome], interrupt: &AtomicBool) -> RunEnd {
@@ -277,7 +282,7 @@ impl Watcher<'_> {
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         let outcomes: Vec<PointOutcome> = state.outcomes.into_iter().flatten().collect();
         if let Some(progress) = state.progress {
-            progress.finish(&format!("{} points", outcomes.len()));
+            progress.finish(&counted(outcomes.len(), "point"));
         }
         outcomes
     }

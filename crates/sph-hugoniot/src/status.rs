@@ -269,6 +269,15 @@ pub fn read(folder: &Path) -> Result<Option<Found>> {
     Ok(Some(Found { state, status }))
 }
 
+/// Folders of runs just below a folder, in the order of their names: those of a resolution study.
+pub fn runs_below(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let runs = entries.map(|entry| entry.path()).filter(|path| path.join(FILE).exists());
+    let mut names: Vec<String> = runs.map(|path| path.display().to_string()).collect();
+    names.sort();
+    names
+}
+
 impl Found {
     /// The text for people.
     pub fn to_text(&self) -> String {

@@ -158,11 +158,25 @@ fn colors_are_off_when_piped_and_follow_the_option() {
 }
 
 #[test]
+fn numbers_of_threads_that_cannot_be_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (command, threads) in [("check", "0"), ("run", "0"), ("run", "5000"), ("run", "two")] {
+        let output = hugoniot(folder.path(), &[command, "case.ron", "--threads", threads]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(&output.stderr).contains("for '--threads <N>'"), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
 fn a_folder_without_a_run_is_told_and_schemas_and_completions_are_text() {
     let folder = tempfile::tempdir().unwrap();
     let output = hugoniot(folder.path(), &["status", "absent"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("absent: no run has written here; hint: "));
+    std::fs::create_dir_all(folder.path().join("study/D_2um")).unwrap();
+    std::fs::write(folder.path().join("study/D_2um/status.json"), "{}").unwrap();
+    let said = text(&hugoniot(folder.path(), &["status", "study"]).stderr);
+    assert!(said.contains("hint: the folder of one run, such as study/D_2um"), "{said}");
     for schema in ["check", "run", "status", "table"] {
         let output = hugoniot(folder.path(), &["schema", schema]);
         assert!(serde_json::from_slice::<Value>(&output.stdout).unwrap()["$schema"].is_string());

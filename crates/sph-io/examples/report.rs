@@ -6,7 +6,7 @@ use sph_io::plot::{Axis, Figure, Series};
 use sph_io::table::{Column, Table};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = std::env::args().nth(1).ok_or("give a folder that exists")?;
+    let folder = std::env::args().nth(1).ok_or("usage: report FOLDER")?;
     let page = Page::new("Shock Hugoniot of porous copper")
         .with_lead("u_s(u_p) from three points, with made-up numbers")
         .with_verdict(Verdict::Caution, "One of three points has not settled; the others pass all checks.")

@@ -134,11 +134,10 @@ pub fn interventions(outcomes: &[&PointOutcome]) -> Vec<String> {
     let line = |(name, text, of_particle_steps, value): &Count| {
         let count: u64 = acted.iter().map(value).sum();
         let share = 100.0 * count as f64 / steps as f64;
-        let share = if *of_particle_steps {
-            format!(" ({share:.2e} % of all particle-steps)")
-        } else {
-            String::new()
-        };
+        // Below a hundredth of a percent only the power of ten is of interest.
+        let share = if share < 0.01 { format!("{share:.0e}") } else { format!("{share:.2}") };
+        let share =
+            if *of_particle_steps { format!(" ({share} % of all particle-steps)") } else { String::new() };
         (count > 0).then(|| format!("{name}: {count}{share}: {text}"))
     };
     let mut lines: Vec<String> = COUNTS.iter().filter_map(line).collect();

@@ -132,25 +132,32 @@ fn interrupt(child: &std::process::Child) {
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
 }
 
-/// A run of the file `case.ron` in a folder, once its point is under way.
+/// A run of a case in a folder, once its point is under way.
 #[cfg(unix)]
-fn under_way(folder: &Path) -> std::process::Child {
+fn under_way(folder: &Path, case: &str) -> std::process::Child {
+    std::fs::write(folder.join("case.ron"), case).unwrap();
     let mut command = hugoniot();
     command.current_dir(folder).args(["run", "case.ron", "--up", "300", "--out", "out", "--quiet"]);
-    let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let mut child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
     while !folder.join("out/points/up_0300").exists() {
-        std::thread::sleep(std::time::Duration::from_millis(20));
+        assert!(child.try_wait().unwrap().is_none(), "it ended before its point began");
+        std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    std::thread::sleep(std::time::Duration::from_millis(300));
+    std::thread::sleep(std::time::Duration::from_millis(100));
     child
+}
+
+/// The smoke case without an end, so that a busy machine cannot come too late.
+#[cfg(unix)]
+fn endless() -> String {
+    smoke().replace("max_fed_cells: 12", "max_fed_cells: 100000").replace("tolerance: 0.1", "tolerance: 1e-5")
 }
 
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_goes_on_to_its_end() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("case.ron"), smoke()).unwrap();
-    let mut child = under_way(folder.path());
+    let mut child = under_way(folder.path(), smoke());
     interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(folder.path().join("out/report.html").exists());
@@ -172,8 +179,7 @@ fn an_interrupted_run_goes_on_to_its_end() {
 fn a_second_interrupt_stops_at_once() {
     use std::io::{BufRead, BufReader};
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("case.ron"), smoke()).unwrap();
-    let mut child = under_way(folder.path());
+    let mut child = under_way(folder.path(), &endless());
     let mut said = BufReader::new(child.stderr.take().unwrap()).lines();
     interrupt(&child);
     assert!(said.any(|line| line.unwrap().contains("again to stop at once")));
@@ -186,20 +192,7 @@ fn a_second_interrupt_stops_at_once() {
 #[test]
 fn an_interrupt_keeps_what_was_computed() {
     let folder = tempfile::tempdir().unwrap();
-    let case = smoke()
-        .replace("max_fed_cells: 12", "max_fed_cells: 100000")
-        .replace("tolerance: 0.1", "tolerance: 1e-5");
-    std::fs::write(folder.path().join("case.ron"), case).unwrap();
-    let mut child = hugoniot()
-        .current_dir(folder.path())
-        .args(["run", "case.ron", "--up", "300", "--out", "out", "--quiet"])
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
-    while !folder.path().join("out/case.json").exists() {
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
-    std::thread::sleep(std::time::Duration::from_millis(300));
+    let mut child = under_way(folder.path(), &endless());
     interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let csv = std::fs::read_to_string(folder.path().join("out/hugoniot.csv")).unwrap();

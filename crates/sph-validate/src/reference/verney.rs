@@ -93,7 +93,7 @@ impl Sphere {
 mod tests {
     use super::*;
 
-    /// The closed form of Howell and Ball, U0² = 4 Y R1 F/(3 ρ δ), F = ∫_λ^1 x² ln(1 + ((1+α)³ - 1)/x³) dx.
+    /// The closed form of Verney's problem in space (LA-14379), U0² = 4 Y R1 F/(3 ρ δ), F = ∫_λ^1 x² ln(1 + ((1+α)³ - 1)/x³) dx.
     #[test]
     fn velocity_of_the_sphere_is_that_of_the_closed_form() {
         let sphere =

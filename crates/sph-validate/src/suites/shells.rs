@@ -17,7 +17,8 @@
 //!
 //! Reference: the same shell on a Lagrangian mesh of 400 zones, read likewise.
 //!
-//! Source: B. P. Howell and G. J. Ball, J. Comput. Phys. 175 (2002) 128; R. Weseloh, LA-14379 (2007).
+//! Source: B. P. Howell and G. J. Ball, J. Comput. Phys. 175 (2002) 128; J. R. Kamm, J. S. Brock et al., Enhanced
+//! Verification Test Suite for Physics Simulation Codes, LA-14379, SAND2008-7813 (2009).
 
 use sph_core::geometry::{Lattice, Packing, concentric_rings};
 use sph_core::{CoreError, Dim2, Dim3, Dimension, Domain, Particle, Particles, Vector};

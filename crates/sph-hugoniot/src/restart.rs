@@ -100,7 +100,7 @@ impl Keeper {
     ///
     /// # Errors
     /// If one cannot be removed.
-    pub fn forget_states(&self) -> Result<()> {
+    pub(crate) fn forget_states(&self) -> Result<()> {
         for entry in std::fs::read_dir(&self.folder)? {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();

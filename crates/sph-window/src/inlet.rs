@@ -62,7 +62,7 @@ pub struct InletState {
 
 impl InletState {
     /// Takes a measured layer in, `elapsed` [s] after the last one.
-    pub fn update(&mut self, layer: &Layer, elapsed: f64) {
+    pub(crate) fn update(&mut self, layer: &Layer, elapsed: f64) {
         let weight = 1.0 - (-elapsed * layer.wave_speed / layer.length).exp();
         self.stress += weight * (-layer.stress - self.stress);
         self.deficit = self.stress / (layer.medium_density * layer.wave_speed);
@@ -82,7 +82,7 @@ impl InletState {
 
 /// What the layer just inside of the inlet holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layer {
+pub(crate) struct Layer {
     /// Length along x [m].
     pub length: f64,
     /// Mean density of the undisturbed medium `ρ00` [kg/m³].
@@ -122,7 +122,7 @@ impl Layer {
 
 /// Where a [`Layer`] is, and in which medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LayerPlace {
+pub(crate) struct LayerPlace {
     /// Right end [m].
     pub end: f64,
     /// Length along x [m].
@@ -134,7 +134,7 @@ pub struct LayerPlace {
 }
 
 /// Frees the particles that have left the inlet region.
-pub fn release<D: Dimension>(particles: &mut Particles<D>, regions: &Regions) {
+pub(crate) fn release<D: Dimension>(particles: &mut Particles<D>, regions: &Regions) {
     for i in 0..particles.len() {
         let x = particles.position[0][i];
         if particles.constraint[i] == Constraint::ImposedVelocity
@@ -147,7 +147,11 @@ pub fn release<D: Dimension>(particles: &mut Particles<D>, regions: &Regions) {
 }
 
 /// Gives the particles of the inlet the velocity `-u_b` [m/s]; returns the momentum and energy put in.
-pub fn impose<D: Dimension>(particles: &mut Particles<D>, regions: &Regions, inlet_velocity: f64) -> Content {
+pub(crate) fn impose<D: Dimension>(
+    particles: &mut Particles<D>,
+    regions: &Regions,
+    inlet_velocity: f64,
+) -> Content {
     let mut sum = Content::default();
     let velocity = D::vector(|axis| if axis == 0 { -inlet_velocity } else { 0.0 });
     for i in 0..particles.len() {

@@ -63,7 +63,11 @@ impl AddAssign for Content {
 }
 
 /// Sets a particle's velocity and returns the momentum and energy that this put in.
-pub fn impose_velocity<D: Dimension>(particles: &mut Particles<D>, i: usize, velocity: D::Vector) -> Content {
+pub(crate) fn impose_velocity<D: Dimension>(
+    particles: &mut Particles<D>,
+    i: usize,
+    velocity: D::Vector,
+) -> Content {
     let (before, mass) = (particles.velocity_of(i), particles.mass[i]);
     (0..D::COUNT).for_each(|axis| particles.velocity[axis][i] = velocity[axis]);
     let change = velocity - before;

@@ -10,7 +10,7 @@ use sph_core::dimension::Dimension;
 use sph_core::particles::{Constraint, Particles};
 
 /// Imposes on the particles what their part of the outlet asks for; returns the momentum and energy put in.
-pub fn impose<D: Dimension>(
+pub(crate) fn impose<D: Dimension>(
     particles: &mut Particles<D>,
     regions: &Regions,
     outlet_velocity: f64,
@@ -34,7 +34,7 @@ pub fn impose<D: Dimension>(
 }
 
 /// Removes what has passed the removal plane and books it.
-pub fn remove<D: Dimension>(particles: &mut Particles<D>, ledger: &mut Ledger) {
+pub(crate) fn remove<D: Dimension>(particles: &mut Particles<D>, ledger: &mut Ledger) {
     let mut left = false;
     for i in 0..particles.len() {
         if particles.position[0][i] < 0.0 {

@@ -17,7 +17,7 @@ use crate::settings::PlateauMargins;
 use serde::{Deserialize, Serialize};
 
 /// Bounds of the plateau [m] for a front at a place [m]; `None` when it is shorter than ten particle sizes.
-pub fn bounds(
+pub(crate) fn bounds(
     front: f64,
     regions: &Regions,
     margins: &PlateauMargins,

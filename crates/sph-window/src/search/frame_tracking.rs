@@ -54,7 +54,7 @@ impl Observation {
 
 /// What tracking wants and knows beside its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
+pub(crate) struct Target {
     /// Wanted place of the front [m].
     pub front: f64,
     /// Swept length between boosts, whole periods of the medium [m].
@@ -78,7 +78,12 @@ impl Tracker {
     }
 
     /// Takes an observation in and returns the velocity [m/s] to boost everything by, if a boost is due.
-    pub fn observe(&mut self, now: &Observation, target: &Target, settings: &FrameTracking) -> Option<f64> {
+    pub(crate) fn observe(
+        &mut self,
+        now: &Observation,
+        target: &Target,
+        settings: &FrameTracking,
+    ) -> Option<f64> {
         let Some(reference) = self.reference else {
             self.reference = Some(*now);
             return None;

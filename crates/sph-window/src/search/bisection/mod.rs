@@ -67,7 +67,7 @@ impl Default for Bisection {
 
 /// One look, as the bisection needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub(crate) struct Look {
     /// Time, and where the front is.
     pub now: Observation,
     /// Length of the medium that has come in [m].
@@ -80,7 +80,7 @@ pub struct Look {
 
 /// What the bisection wants and knows beside its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surroundings {
+pub(crate) struct Surroundings {
     /// Wanted place of the front, and how the medium comes in.
     pub target: Target,
     /// Velocity of the piston relative to the medium ahead [m/s].
@@ -93,7 +93,7 @@ pub struct Surroundings {
 
 /// What the window is to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Order {
+pub(crate) enum Order {
     /// Save this state, and go to a frame with this outlet velocity [m/s].
     SaveAndTry(f64),
     /// Take the saved state back, in a frame with this outlet velocity [m/s].
@@ -179,7 +179,12 @@ impl Bisector {
     }
 
     /// Takes a look in; returns what the window is to do, if anything.
-    pub fn observe(&mut self, look: &Look, around: &Surroundings, settings: &Bisection) -> Option<Order> {
+    pub(crate) fn observe(
+        &mut self,
+        look: &Look,
+        around: &Surroundings,
+        settings: &Bisection,
+    ) -> Option<Order> {
         let first = *self.particles.get_or_insert(look.particles);
         match self.phase {
             Phase::Found => return None,

@@ -55,7 +55,7 @@ kinds! {
     ViscosityKind, "viscosity", "\"10 Pa s\"", [("Pa s", 1.0), ("Pa*s", 1.0), ("poise", 0.1), ("kpoise", 100.0)];
 }
 
-/// A quantity in SI with the text as it was written.
+/// A quantity of a kind, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity<K: Kind> {
     /// Value in SI.

@@ -125,6 +125,8 @@ fn a_run_in_an_odd_place_tells_its_end_as_json_that_fits_the_schemas() {
     {
         assert!(page.contains(part) || page.contains(&part.replace('\'', "&#39;")), "{part} is missing");
     }
+    let verdict = ["All checks of the point hold", "The point needs a look", "The point is bad"];
+    assert!(verdict.iter().any(|words| page.contains(words)), "one point is not spoken of as several");
 }
 
 #[test]

@@ -94,7 +94,10 @@ fn answer(case: &Case, outcomes: &[&PointOutcome]) -> (Verdict, String) {
     let (n, worst) = (outcomes.len(), Verdict::worst(verdicts.iter().copied()));
     let mut words = match worst {
         Verdict::Unknown => "Nothing could be judged".to_owned(),
+        Verdict::Good if n == 1 => "All checks of the point hold".to_owned(),
         Verdict::Good => format!("All checks of all {n} points hold"),
+        Verdict::Caution if n == 1 => "The point needs a look".to_owned(),
+        Verdict::Bad if n == 1 => "The point is bad".to_owned(),
         _ => {
             format!(
                 "Of {n} points {} pass all checks, {} need a look, {} are bad",
@@ -104,8 +107,10 @@ fn answer(case: &Case, outcomes: &[&PointOutcome]) -> (Verdict, String) {
             )
         }
     };
-    if unfinished > 0 {
-        words += &format!("; {unfinished} did not settle");
+    match (unfinished, n) {
+        (0, _) => {}
+        (_, 1) => words += "; it did not settle",
+        _ => words += &format!("; {unfinished} did not settle"),
     }
     (worst, words + ".")
 }

@@ -241,15 +241,17 @@ fn extent(
         let data = curves.data.iter().flat_map(|d| &d.points);
         places.extend(data.map(|d| (d.particle_velocity, d.shock_velocity)));
     }
-    let wider = |values: Vec<f64>, floor: bool| {
+    let wider = |values: Vec<f64>, floor: bool, alone: f64| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let margin = 0.1 * (high - low).max(0.05 * high.abs());
+        // One point alone spreads over nothing: what is around it is then of its own size.
+        let margin = if high == low { alone * high.abs() } else { 0.1 * (high - low).max(0.05 * high.abs()) };
         (if floor { 0.0 } else { low - margin }, high + margin)
     };
     let is_velocity = matches!(plane, Plane::ShockVelocity | Plane::StressVelocity);
-    let x = wider(places.iter().map(|p| p.0).collect(), is_velocity);
-    let y = wider(places.iter().map(|p| p.1).collect(), plane != Plane::ShockVelocity);
+    // Densities differ by little where velocities and stresses differ by much.
+    let x = wider(places.iter().map(|p| p.0).collect(), is_velocity, if is_velocity { 0.2 } else { 0.02 });
+    let y = wider(places.iter().map(|p| p.1).collect(), plane != Plane::ShockVelocity, 0.2);
     (x, (y.0.max(0.0), y.1))
 }
 

@@ -34,11 +34,8 @@ fn bench_dimension<D: Dimension>(criterion: &mut Criterion, edge: usize, tree_ed
     group.throughput(Throughput::Elements(p.len() as u64));
     let build = || NeighborLists::<D>::build(&p.position, &p.size, &domain, REACH);
     group.bench_function(BenchmarkId::new("cell lists", p.len()), |b| b.iter(build));
-    let lists = build();
-    let mut ranges = Vec::new();
-    group.bench_function(BenchmarkId::new("outlived", p.len()), |b| {
-        b.iter(|| lists.outlived(&p.position, &mut ranges))
-    });
+    let mut lists = build();
+    group.bench_function(BenchmarkId::new("outlived", p.len()), |b| b.iter(|| lists.outlived(&p.position)));
 
     let (p, domain) = particles::<D>(tree_edge);
     group.throughput(Throughput::Elements(p.len() as u64));

@@ -135,10 +135,10 @@ fn lists_that_are_good_miss_no_pair<D: Dimension>(
     amplitude: f64,
     seed: u64,
 ) -> Result<(), TestCaseError> {
-    let lists =
+    let mut lists =
         NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, Reach { factor: 1.0, skin });
     let now = scene.moved(amplitude, seed);
-    if lists.outlived(&now, &mut Vec::new()) {
+    if lists.outlived(&now) {
         let farthest_apart = 2.0 * amplitude * (D::COUNT as f64).sqrt();
         prop_assert!(farthest_apart > skin, "given up too early");
         return Ok(());
@@ -148,6 +148,61 @@ fn lists_that_are_good_miss_no_pair<D: Dimension>(
         prop_assert!(listed.binary_search(&pair).is_ok(), "{:?} is missing", pair);
     }
     Ok(())
+}
+
+/// The displacement grows step by step until the lists say that they are outlived; up to then no pair is missing.
+fn lists_hold_as_a_flow_goes_on<D: Dimension>(
+    scene: &Scene<D>,
+    skin: f64,
+    amplitude: f64,
+    waves: u32,
+    closing: f64,
+) -> Result<(), TestCaseError> {
+    let reach = Reach { factor: 1.0, skin };
+    let mut lists = NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, reach);
+    let listed = listed_pairs(&lists);
+    let middle = 0.5 * scene.domain.upper[0];
+    for step in 1..=20 {
+        let share = step as f64 / 20.0;
+        let now = Components::from_fn(|a| {
+            let moved = |x: f64| {
+                let phase = f64::from(waves) * std::f64::consts::TAU * x / scene.domain.upper[a];
+                let stream = if a == 0 && x < middle { closing } else { 0.0 };
+                x + share * (amplitude * phase.sin() + stream)
+            };
+            scene.position[a].iter().map(|&x| moved(x)).collect()
+        });
+        if lists.outlived(&now) {
+            break;
+        }
+        for pair in brute_force::pairs(&now, &scene.size, &scene.domain, |a, b| a + b) {
+            prop_assert!(listed.binary_search(&pair).is_ok(), "{:?} is missing in step {}", pair, step);
+        }
+    }
+    Ok(())
+}
+
+/// Two bodies fly towards each other, each without strain: lists end before they touch, and not long before.
+#[test]
+fn lists_of_bodies_apart_end_before_they_meet() {
+    let (edge, gap, skin) = (16, 12.3, 0.2);
+    let body = |at: f64| (0..edge * edge).map(move |k| [at + (k / edge) as f64, (k % edge) as f64]);
+    let points: Vec<[f64; 2]> = body(0.0).chain(body(f64::from(edge) - 1.0 + gap)).collect();
+    let position: [Vec<f64>; 2] = std::array::from_fn(|a| points.iter().map(|p| p[a]).collect());
+    let domain = Domain::<Dim2>::open();
+    let reach = Reach { factor: 1.0, skin };
+    let mut lists = NeighborLists::<Dim2>::build(&position, &vec![1.0; points.len()], &domain, reach);
+    let mut flown = 0.0;
+    let outlived = |lists: &mut NeighborLists<Dim2>, flown: f64| {
+        let mut now = position.clone();
+        now[0].iter_mut().take((edge * edge) as usize).for_each(|x| *x += flown);
+        lists.outlived(&now)
+    };
+    while !outlived(&mut lists, flown) {
+        flown += 0.05;
+        assert!(flown < gap - 2.0, "particles see each other, and the lists know nothing of it");
+    }
+    assert!(flown > 10.0 * skin, "ended after {flown} of {}", gap - 2.0);
 }
 
 proptest! {
@@ -187,6 +242,25 @@ proptest! {
     ) {
         let scene = Scene::<Dim2>::new(count, periodic, 1.0, seed);
         lists_that_are_good_miss_no_pair(&scene, skin, share * skin, seed)?;
+    }
+
+    /// Flows that bring distant particles together: waves of any length, and a stream of their own for each half of the box.
+    #[test]
+    fn good_lists_miss_no_pair_in_a_flow(
+        seed: u64, count in 1_usize..500, periodic in 0_u8..4, skin in 0.0..0.1,
+        amplitude in 0.0..0.5, waves in 0_u32..9, closing in 0.0..1.5
+    ) {
+        let scene = Scene::<Dim2>::new(count, periodic, 2.0, seed);
+        lists_hold_as_a_flow_goes_on(&scene, skin, amplitude, waves, closing)?;
+    }
+
+    #[test]
+    fn good_lists_miss_no_pair_in_a_flow_in_space(
+        seed: u64, count in 1_usize..300, periodic in 0_u8..8, skin in 0.0..0.1,
+        amplitude in 0.0..0.5, waves in 0_u32..5, closing in 0.0..1.0
+    ) {
+        let scene = Scene::<Dim3>::new(count, periodic, 1.0, seed);
+        lists_hold_as_a_flow_goes_on(&scene, skin, amplitude, waves, closing)?;
     }
 
     /// The tree's nearest point is the nearest, for targets outside the box too.

@@ -2,7 +2,7 @@
 
 use sph_core::lanes::{LANES, Line};
 use sph_core::neighbors::cell_grid::sort_particles;
-use sph_core::neighbors::{DisplacementRange, NeighborLists, Reach};
+use sph_core::neighbors::{NeighborLists, Reach};
 
 use crate::dimension::SolidDimension;
 use crate::error::StepError;
@@ -34,7 +34,6 @@ pub(crate) struct Scratch {
     faces: [Vec<Line>; 2],
     reports: Vec<TileReport>,
     steps: Vec<(f64, u32)>,
-    ranges: Vec<DisplacementRange>,
 }
 
 impl Scratch {
@@ -225,7 +224,7 @@ impl<D: SolidDimension> Simulation<D> {
         if let Some(error) = first_broken(&self.scratch.reports, &self.particles, end) {
             return Err(error);
         }
-        self.lists_valid = !self.lists.outlived(&self.particles.position, &mut self.scratch.ranges);
+        self.lists_valid = !self.lists.outlived(&self.particles.position);
         let impulse = D::vector(|a| report.input.impulse[a]);
         Ok(StepReport {
             time_step,

@@ -15,16 +15,18 @@ pub mod brute_force;
 pub mod cell_grid;
 pub mod halo;
 pub mod kd_tree;
+mod motion;
 mod search;
 mod tile_lists;
 
 use rayon::prelude::*;
 
-use crate::dimension::{Components, Dimension, Vector};
+use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
 use crate::lanes::LANES;
 use cell_grid::CellSortedPoints;
 pub use halo::Halo;
+use motion::Motion;
 use search::Search;
 pub use tile_lists::{Incoming, TileLists};
 
@@ -32,9 +34,6 @@ pub use tile_lists::{Incoming, TileLists};
 pub const TILE_BLOCKS: usize = 32;
 /// Particles in a tile.
 pub const TILE: usize = TILE_BLOCKS * LANES;
-
-/// Least and largest displacement of the particles of a tile, by axis [m].
-pub type DisplacementRange = [(f64, f64); 3];
 
 /// Neighbor lists of all particles, in blocks and tiles.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +43,7 @@ pub struct NeighborLists<D: Dimension> {
     tiles: Vec<TileLists>,
     /// Positions when the lists were built.
     reference: Vec<Vec<f64>>,
-    skin: f64,
+    motion: Motion<D>,
 }
 
 /// What decides which pairs are listed.
@@ -71,7 +70,8 @@ impl<D: Dimension> NeighborLists<D> {
             (0..n_tiles).into_par_iter().map(|t| search.tile(t, position)).collect();
         tile_lists::connect(&mut tiles);
         let reference = position.as_ref().to_vec();
-        Self { n_particles, halo, tiles, reference, skin: reach.skin }
+        let motion = Motion::since(position, domain, farthest, reach.skin);
+        Self { n_particles, halo, tiles, reference, motion }
     }
 
     /// Number of particles.
@@ -128,31 +128,11 @@ impl<D: Dimension> NeighborLists<D> {
     /// Bytes that the lists take.
     pub fn bytes(&self) -> usize {
         let halo = self.halo.len() * (4 + size_of::<D::Vector>());
-        self.tiles.iter().map(TileLists::bytes).sum::<usize>() + halo + self.n_particles * 8 * D::COUNT
+        self.tiles.iter().map(TileLists::bytes).sum::<usize>() + halo + self.n_particles * 8 * D::COUNT + self.motion.bytes()
     }
 
-    /// True if two particles that see each other may have moved by more than the skin against each other: the length
-    /// of the range of displacements over every pair of tiles that see each other bounds it. `ranges` is scratch.
-    pub fn outlived(&self, position: &D::AxisColumns, ranges: &mut Vec<DisplacementRange>) -> bool {
-        ranges.resize(self.tiles.len(), [(0.0, 0.0); 3]);
-        ranges
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(t, range)| *range = self.displacement_range(t, position));
-        let apart = |t: usize, s: usize| {
-            let extent = |a: usize| ranges[t][a].1.max(ranges[s][a].1) - ranges[t][a].0.min(ranges[s][a].0);
-            D::vector(extent).length()
-        };
-        (0..self.tiles.len()).any(|t| self.tiles[t].seen().iter().any(|&s| apart(t, s as usize) > self.skin))
-    }
-
-    fn displacement_range(&self, t: usize, position: &D::AxisColumns) -> DisplacementRange {
-        let (first, end) = (t * TILE, ((t + 1) * TILE).min(self.n_particles));
-        let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-        for a in 0..D::COUNT {
-            let (now, then) = (&position[a][first..end], &self.reference[a][first..end]);
-            range[a] = now.iter().zip(then).fold(range[a], |(l, u), (x, y)| (l.min(x - y), u.max(x - y)));
-        }
-        range
+    /// True if some pair that is not listed may have come within its support: see the module `motion`.
+    pub fn outlived(&mut self, position: &D::AxisColumns) -> bool {
+        self.motion.is_too_long(&self.reference, position)
     }
 }

@@ -210,7 +210,7 @@ impl<D: Dimension> LaneKernel for TileSearch<'_, '_, D> {
             }
             lists.push_block(block, &owned, &others);
         }
-        let seen = (0..found.seen.len() as u32).filter(|&s| found.seen[s as usize]).collect();
-        lists.set_targets(tile, seen, |record| search.owner(record));
+        let seen: Vec<u32> = (0..found.seen.len() as u32).filter(|&s| found.seen[s as usize]).collect();
+        lists.set_targets(tile, &seen, |record| search.owner(record));
     }
 }

@@ -29,8 +29,6 @@ pub struct TileLists {
     foreign: Vec<u32>,
     /// Where other tiles have sums for particles of this one.
     pub(super) incoming: Vec<Incoming>,
-    /// Tiles (this one too) that hold particles seen from here.
-    seen: Vec<u32>,
     /// Places of own particles in the buffer: the tile's particles, filled up to whole blocks.
     n_own: usize,
 }
@@ -78,7 +76,7 @@ impl TileLists {
 
     /// Places in the buffer, once all blocks are there: own particles first, then the foreign ones in their order. `seen` has
     /// the tiles that hold particles seen from here, ascending; `owner` tells the particle of a record.
-    pub(super) fn set_targets(&mut self, tile: usize, seen: Vec<u32>, owner: impl Fn(u32) -> u32) {
+    pub(super) fn set_targets(&mut self, tile: usize, seen: &[u32], owner: impl Fn(u32) -> u32) {
         // Of each particle of this tile and then of the tiles that are seen: its place in the buffer.
         let mut places = vec![UNMET; (1 + seen.len()) * TILE];
         let first_of = |of_tile: usize| match seen.iter().position(|&s| s as usize == of_tile) {
@@ -120,7 +118,7 @@ impl TileLists {
         }
         assert!(self.n_own + foreign.len() < MET as usize, "tile {tile} meets {} others", foreign.len());
         self.targets = met.iter().map(|at| at.map(|at| places[at as usize])).collect();
-        (self.foreign, self.seen) = (foreign, seen);
+        self.foreign = foreign;
         self.slots.shrink_to_fit();
     }
 
@@ -179,14 +177,9 @@ impl TileLists {
         &self.incoming
     }
 
-    /// Tiles (this one too) that hold particles seen from here.
-    pub(super) fn seen(&self) -> &[u32] {
-        &self.seen
-    }
-
     /// Bytes that the lists take.
     pub fn bytes(&self) -> usize {
-        let words = self.start.len() + self.once.len() + self.foreign.len() + self.seen.len();
+        let words = self.start.len() + self.once.len() + self.foreign.len();
         self.slots.len() * size_of::<[u32; LANES]>()
             + self.targets.len() * size_of::<[u16; LANES]>()
             + words * 4

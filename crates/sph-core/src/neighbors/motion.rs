@@ -1,0 +1,198 @@
+//! How far particles have moved against each other since their lists were built.
+//!
+//! A pair that is not listed was farther apart than its support and the skin. It matters again only if its particles come
+//! nearer to each other by more than that gap; their relative displacement is at least as long. Cells of width W bound it
+//! without a look at pairs: two particles whose cells are k apart (the largest difference of their cell coordinates) were
+//! farther apart than (k - 1) W, and both lie in every window of (k + 1)^d cells around them. With R the longest support of
+//! a pair, lists hold while the range of displacements is no longer than
+//!
+//! ```text
+//! skin        in each window of 2^d cells       k ≤ 1
+//! W - R       in each window of 3^d cells       k = 2
+//! 2 W - R     over all particles                k > 2
+//! ```
+//!
+//! The common stream costs nothing, nor does a smooth flow, whose differences over two cells are small. Windows are closed
+//! across periodic boundaries: images of a particle move as it does.
+
+use rayon::prelude::*;
+
+use super::cell_grid::counting_sort;
+use crate::dimension::{Components, Dimension, Vector};
+use crate::domain::Domain;
+
+/// Width of a cell over the reach of the lists, support and skin [-]. The larger it is, the more motion a window of two
+/// holds, and the less a window of three matters, which may move by the excess besides.
+const WIDTH: f64 = 1.1;
+
+/// Cells a particle, at most: a sparse cloud gets wider cells.
+const CELLS_A_PARTICLE: usize = 4;
+
+/// Least displacement along each axis, and the negative of the largest [m]: both are least values, which loops over
+/// windows take together.
+type Range<D> = (<D as Dimension>::Axes<f64>, <D as Dimension>::Axes<f64>);
+
+/// Particles by cell at the time the lists were built.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion<D: Dimension> {
+    /// Number of cells along each axis.
+    count: [usize; 3],
+    periodic: [bool; 3],
+    /// Particles, cell by cell.
+    order: Vec<u32>,
+    /// First particle of every cell, and the end of the last.
+    start: Vec<u32>,
+    /// Longest range of displacements in windows of two and of three cells along each axis, and of all particles [m].
+    allowed: [f64; 3],
+    /// Of each cell, when last looked at.
+    ranges: Vec<Range<D>>,
+}
+
+impl<D: Dimension> Motion<D> {
+    /// Sorts particles (inside the box on periodic axes) whose lists reach to `farthest` [m] at most, skin included.
+    pub fn since(position: &D::AxisColumns, domain: &Domain<D>, farthest: f64, skin: f64) -> Self {
+        let n = position[0].len();
+        let mut width = (WIDTH * farthest).max(f64::MIN_POSITIVE);
+        let bounds: [(f64, f64); 3] = std::array::from_fn(|a| bounds(position, domain, a));
+        let mut count = cells(&bounds, width);
+        while count.iter().map(|&n| n as f64).product::<f64>() > (CELLS_A_PARTICLE * n + 64) as f64 {
+            width *= 1.5;
+            count = cells(&bounds, width);
+        }
+        // Periodic axes are divided evenly, so that their cells may be wider yet.
+        let inverse: [f64; 3] = std::array::from_fn(|a| {
+            if a < D::COUNT && domain.periodic[a] { count[a] as f64 / domain.period(a) } else { 1.0 / width }
+        });
+        let cell = |i: usize| {
+            (0..D::COUNT).fold(0, |number, a| {
+                let along = ((position[a][i] - bounds[a].0) * inverse[a]) as usize;
+                number * count[a] + along.min(count[a] - 1)
+            })
+        };
+        let keys: Vec<u32> = (0..n).into_par_iter().map(|i| cell(i) as u32).collect();
+        let (order, start) = counting_sort(&keys, count.iter().product());
+        let support = farthest - skin;
+        let periodic = std::array::from_fn(|a| a < D::COUNT && domain.periodic[a]);
+        let allowed = [skin, width - support, 2.0 * width - support];
+        let ranges = vec![nowhere::<D>(); start.len() - 1];
+        Self { count, periodic, order, start, allowed, ranges }
+    }
+
+    /// Bytes in use.
+    pub fn bytes(&self) -> usize {
+        (self.order.len() + self.start.len()) * 4 + self.ranges.len() * size_of::<Range<D>>()
+    }
+
+    /// True if particles may have moved farther against each other than lists hold, from the positions `then` to those
+    /// `now`.
+    pub fn is_too_long(&mut self, then: &[Vec<f64>], now: &D::AxisColumns) -> bool {
+        let (order, start) = (&self.order, &self.start);
+        self.ranges.par_iter_mut().with_min_len(256).enumerate().for_each(|(c, range)| {
+            let members = &order[start[c] as usize..start[c + 1] as usize];
+            *range = range_of::<D>(members, then, now);
+        });
+        let all = length::<D>(&self.ranges.iter().fold(nowhere::<D>(), |all, range| united::<D>(&all, range)));
+        let [skin, _, of_all] = self.allowed;
+        let layers = self.count[0];
+        all > of_all || all > skin && (0..layers).into_par_iter().any(|x| self.layer_is_too_long(x))
+    }
+
+    /// Whether a window that begins in the cells with the first coordinate `x` holds too long a range.
+    fn layer_is_too_long(&self, x: usize) -> bool {
+        let inner = D::COUNT - 1;
+        let middle = if D::COUNT == 3 { self.count[1] } else { 1 };
+        (2..=3).any(|n| {
+            let allowed = self.allowed[n - 2];
+            let ends = self.count[inner] + if self.periodic[inner] { n - 1 } else { 0 };
+            (0..middle).any(|y| {
+                let mut recent = [nowhere::<D>(); 3];
+                (0..ends).any(|end| {
+                    recent[end % n] = self.column([x, y, end % self.count[inner]], n);
+                    let window = recent[..n].iter().fold(nowhere::<D>(), |w, range| united::<D>(&w, range));
+                    length::<D>(&window) > allowed
+                })
+            })
+        })
+    }
+
+    /// Range of the cells with one coordinate along the last axis, over `n` cells along each other axis, from `at` on.
+    #[inline]
+    fn column(&self, at: [usize; 3], n: usize) -> Range<D> {
+        let [x, y, last] = at;
+        let mut range = nowhere::<D>();
+        for x in x..x + n {
+            let Some(x) = self.inside(0, x) else { break };
+            if D::COUNT == 2 {
+                range = united::<D>(&range, &self.ranges[x * self.count[1] + last]);
+                continue;
+            }
+            for y in y..y + n {
+                let Some(y) = self.inside(1, y) else { break };
+                range = united::<D>(&range, &self.ranges[(x * self.count[1] + y) * self.count[2] + last]);
+            }
+        }
+        range
+    }
+
+    /// A cell coordinate, closed across a periodic boundary; `None` beyond an open one.
+    #[inline]
+    fn inside(&self, axis: usize, at: usize) -> Option<usize> {
+        if at < self.count[axis] {
+            Some(at)
+        } else {
+            self.periodic[axis].then_some(at % self.count[axis])
+        }
+    }
+}
+
+/// Bounds of the cells along an axis: the box, or the particles where the axis is open [m].
+fn bounds<D: Dimension>(position: &D::AxisColumns, domain: &Domain<D>, axis: usize) -> (f64, f64) {
+    if axis >= D::COUNT || position[0].is_empty() {
+        return (0.0, 0.0);
+    }
+    if domain.periodic[axis] {
+        return (domain.lower[axis], domain.upper[axis]);
+    }
+    position[axis].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), &x| (l.min(x), u.max(x)))
+}
+
+/// Number of cells at least `width` [m] wide along each axis.
+fn cells(bounds: &[(f64, f64); 3], width: f64) -> [usize; 3] {
+    std::array::from_fn(|a| (((bounds[a].1 - bounds[a].0) / width).min(1e9) as usize).max(1))
+}
+
+/// The range of no particle.
+fn nowhere<D: Dimension>() -> Range<D> {
+    (Components::splat(f64::INFINITY), Components::splat(f64::INFINITY))
+}
+
+#[inline(always)]
+fn united<D: Dimension>(a: &Range<D>, b: &Range<D>) -> Range<D> {
+    let mut range = *a;
+    for k in 0..D::COUNT {
+        range.0[k] = if b.0[k] < range.0[k] { b.0[k] } else { range.0[k] };
+        range.1[k] = if b.1[k] < range.1[k] { b.1[k] } else { range.1[k] };
+    }
+    range
+}
+
+/// Range of the displacements of some particles.
+#[inline]
+fn range_of<D: Dimension>(members: &[u32], then: &[Vec<f64>], now: &D::AxisColumns) -> Range<D> {
+    let mut range = nowhere::<D>();
+    for a in 0..D::COUNT {
+        let (then, now) = (&then[a], &now[a]);
+        for &i in members {
+            let moved = now[i as usize] - then[i as usize];
+            range.0[a] = range.0[a].min(moved);
+            range.1[a] = range.1[a].min(-moved);
+        }
+    }
+    range
+}
+
+/// Length of a range [m], none without particles.
+#[inline(always)]
+fn length<D: Dimension>(range: &Range<D>) -> f64 {
+    D::vector(|a| (-range.1[a] - range.0[a]).max(0.0)).length()
+}

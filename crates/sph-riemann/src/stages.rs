@@ -17,13 +17,11 @@ use crate::{prepare, surface, volume};
 /// Arrays that live as long as the neighbor lists.
 #[derive(Default)]
 pub(crate) struct Scratch {
-    /// Records of the first pass.
-    state: Vec<Line>,
+    /// Records of the first pass; once it is over, what the pairs of the others add up to.
+    pub(crate) state: Vec<Line>,
     /// Records of the second pass, and of time-centering.
     pub(crate) sides: Vec<Line>,
     pub(crate) rows: Vec<Line>,
-    /// What pairs add up to.
-    pub(crate) sums: Vec<Line>,
     /// What the pairs of each tile leave behind.
     pub(crate) pairs: Vec<TilePairs>,
     /// Sizes of the particles that records show, if they are not all the same.
@@ -44,7 +42,7 @@ impl Scratch {
     /// Bytes in use.
     pub(crate) fn bytes(&self) -> usize {
         let faces: usize = self.faces.iter().map(Vec::len).sum();
-        let lines = self.state.len() + self.sides.len() + self.rows.len() + self.sums.len() + faces;
+        let lines = self.state.len() + self.sides.len() + self.rows.len() + faces;
         let pairs: usize = self.pairs.iter().map(TilePairs::bytes).sum();
         lines * size_of::<Line>() + pairs + (self.size.len() + self.rule.len()) * 8
     }
@@ -76,10 +74,9 @@ impl<D: SolidDimension> Simulation<D> {
         let (records, padded) = (self.lists.n_records(), self.lists.n_padded());
         let tiles = self.lists.tiles().len();
         let s = &mut self.scratch;
-        s.state.resize(records * D::STATE_LINES, Line::default());
+        s.state.resize((records * D::STATE_LINES).max(padded * D::SUM_LINES), Line::default());
         s.sides.resize(records * D::SIDES_LINES, Line::default());
         s.rows.resize(padded / LANES * Row::count::<D>(), Line::default());
-        s.sums.resize(padded * D::SUM_LINES, Line::default());
         s.pairs.resize(tiles, TilePairs::default());
         let size = &self.particles.size;
         s.uniform_size =
@@ -161,15 +158,16 @@ impl<D: SolidDimension> Simulation<D> {
         let reconstructs = self.settings.scheme.reconstructs();
         let surface = if reconstructs { self.settings.surface } else { SurfaceTreatment::None };
         let limiter = reconstructs.then_some(self.settings.limiter);
-        let mut sums = std::mem::take(&mut self.scratch.sums);
+        let mut state = std::mem::take(&mut self.scratch.state);
         let mut pairs = std::mem::take(&mut self.scratch.pairs);
         let mut faces = std::mem::take(&mut self.scratch.faces);
+        let sums = &mut state[..self.lists.n_padded() * D::SUM_LINES];
         let pass = self.pass(&self.scratch.sides, surface, 0.0);
-        pass.contacts(limiter, &mut sums, &mut pairs);
+        pass.contacts(limiter, sums, &mut pairs);
         if let Some(FaceClosure { sweeps }) = self.settings.face_closure {
-            pass.close_faces(sweeps, &mut faces, &self.scratch.rows, &mut sums);
+            pass.close_faces(sweeps, &mut faces, &self.scratch.rows, sums);
         }
-        (self.scratch.sums, self.scratch.pairs, self.scratch.faces) = (sums, pairs, faces);
+        (self.scratch.state, self.scratch.pairs, self.scratch.faces) = (state, pairs, faces);
     }
 
     /// The half step of the velocity follows the true acceleration near free surfaces. Where there are none, sums stay as
@@ -183,19 +181,22 @@ impl<D: SolidDimension> Simulation<D> {
             mass: &self.particles.mass,
             half_step: 0.5 * time_step,
         };
-        if !deltas.fill(&s.rows, &mut s.sums, &mut s.sides) {
+        let of_sums = ..self.lists.n_padded() * D::SUM_LINES;
+        if !deltas.fill(&s.rows, &mut s.state[of_sums], &mut s.sides) {
             return;
         }
-        let mut sums = std::mem::take(&mut s.sums);
+        let mut state = std::mem::take(&mut s.state);
         let mut pairs = std::mem::take(&mut s.pairs);
-        self.pass(&self.scratch.sides, self.settings.surface, 0.0).centering(&mut sums, &mut pairs);
-        (self.scratch.sums, self.scratch.pairs) = (sums, pairs);
+        let pass = self.pass(&self.scratch.sides, self.settings.surface, 0.0);
+        pass.centering(&mut state[of_sums], &mut pairs);
+        (self.scratch.state, self.scratch.pairs) = (state, pairs);
     }
 
     pub(crate) fn update(&mut self, time_step: f64) -> TileReport {
         let s = &mut self.scratch;
+        let of_sums = ..self.lists.n_padded() * D::SUM_LINES;
         let (lists, pairs) = (&self.lists, s.pairs.as_slice());
-        let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &mut s.sums, lists, pairs };
+        let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &mut s.state[of_sums], lists, pairs };
         let how = (time_step, self.instructions);
         update(&mut self.particles, &self.matter, &self.settings, outcome, how, &mut s.reports);
         let mut sum = TileReport::default();

@@ -351,7 +351,8 @@ mod tests {
             let mut plain = simulation.particles.clone();
             let mut reports = vec![TileReport::default(); plain.len().div_ceil(256)];
             let scratch = &simulation.scratch;
-            let (rows, sides, mut sums) = (&scratch.rows, &scratch.sides, scratch.sums.clone());
+            let (rows, sides, mut sums) = (&scratch.rows, &scratch.sides, scratch.state.clone());
+            sums.truncate(simulation.lists.n_padded() * D::SUM_LINES);
             let (lists, pairs) = (&simulation.lists, &scratch.pairs);
             let outcome = Outcome { rows, sides, sums: &mut sums, lists, pairs };
             let matter = Matter::new(simulation.materials().to_vec());

@@ -5,10 +5,11 @@
 //! out-of-plane stress of plane strain is not among them: it does not act on the motion.
 
 use sph_core::dimension::{Components, Dim2, Dim3, Dimension, Value};
-use sph_core::lanes::{Lanes, Real};
+use sph_core::lanes::{LANES, Lanes, Real};
 
 use crate::pass::{Pass, Tile};
 use crate::prepare::PrepareTile;
+use crate::record::Sides;
 use crate::update::UpdateTile;
 
 /// Storage index of component (a, b) of a symmetric matrix in `count` dimensions.
@@ -35,6 +36,8 @@ pub trait SolidDimension: Dimension {
     const STATE_LINES: usize;
     /// Cache lines of a record of the second pass.
     const SIDES_LINES: usize;
+    /// The same in a scheme without reconstruction, whose record ends with the fields.
+    const CONSTANT_SIDES_LINES: usize = (Sides::correction::<Self>() - 1) / LANES + 1;
     /// Cache lines of a face record.
     const FACE_LINES: usize;
     /// A face record in registers.
@@ -205,9 +208,9 @@ impl SolidDimension for Dim3 {
     #[inline(always)]
     fn capped_inverse<L: Lanes>(matrix: [L; 6], cap: f64) -> ([L; 6], L) {
         let lanes = matrix.map(|component| component.to_array());
-        let mut inverse = [[0.0; sph_core::lanes::LANES]; 6];
-        let mut least = [0.0; sph_core::lanes::LANES];
-        for l in 0..sph_core::lanes::LANES {
+        let mut inverse = [[0.0; LANES]; 6];
+        let mut least = [0.0; LANES];
+        for l in 0..LANES {
             let (k, smallest) = capped_inverse_3(lanes.map(|component| component[l]), cap);
             (0..6).for_each(|c| inverse[c][l] = k[c]);
             least[l] = smallest;

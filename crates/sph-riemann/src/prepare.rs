@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch_with};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch_with, prefetch};
 use sph_core::neighbors::{TILE, TILE_BLOCKS};
 use sph_core::particles::{Constraint, Particles};
 use sph_materials::{Damage, Material};
@@ -10,7 +10,10 @@ use sph_materials::{Damage, Material};
 use crate::dimension::SolidDimension;
 use crate::matter::Matter;
 use crate::pass::store_records;
-use crate::record::{Row, Sides, State};
+use crate::record::{Prepared, Row, Sides, State};
+
+/// Blocks by which records are asked for before they are written.
+const AHEAD: usize = 8;
 
 /// Pressure of particle `i` [Pa], with the failure rule.
 #[inline]
@@ -20,19 +23,21 @@ pub fn pressure<D: SolidDimension>(particles: &Particles<D>, materials: &[Materi
     material.pressure_with(damage, particles.density[i], particles.specific_internal_energy[i])
 }
 
-/// Fills the records of the first pass and the rows that the material gives, tile by tile.
+/// Fills the records that the first pair loop of a scheme reads, and the rows that the material gives, tile by tile.
 pub fn prepare<D: SolidDimension>(
     particles: &Particles<D>,
     matter: &Matter,
     instructions: InstructionSet,
-    state: &mut [Line],
+    prepared: Prepared,
+    records: &mut [Line],
     rows: &mut [Line],
 ) {
-    let own = particles.len().div_ceil(LANES) * LANES * D::STATE_LINES;
-    let tiles = state[..own].par_chunks_mut(TILE * D::STATE_LINES);
+    let own = particles.len().div_ceil(LANES) * LANES * prepared.lines::<D>();
+    let tiles = records[..own].par_chunks_mut(TILE * prepared.lines::<D>());
     tiles.zip(rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>())).enumerate().for_each(
-        |(t, (state, rows))| {
-            D::prepare(PrepareTile { particles, matter, instructions, first: t * TILE, state, rows });
+        |(t, (records, rows))| {
+            let first = t * TILE;
+            D::prepare(PrepareTile { particles, matter, instructions, first, prepared, records, rows });
         },
     );
 }
@@ -44,7 +49,8 @@ pub struct PrepareTile<'a, D: SolidDimension> {
     instructions: InstructionSet,
     /// Index of the first particle.
     first: usize,
-    state: &'a mut [Line],
+    prepared: Prepared,
+    records: &'a mut [Line],
     rows: &'a mut [Line],
 }
 
@@ -58,22 +64,54 @@ impl<D: SolidDimension> PrepareTile<'_, D> {
 impl<D: SolidDimension> LaneKernel for PrepareTile<'_, D> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { particles, matter, first, state, rows, .. } = self;
-        let records = state.chunks_exact_mut(LANES * D::STATE_LINES);
-        for (b, (record, rows)) in records.zip(rows.chunks_exact_mut(Row::count::<D>())).enumerate() {
+        let Self { particles, matter, first, prepared, records, rows, .. } = self;
+        let lines = prepared.lines::<D>();
+        let blocks = records.chunks_exact_mut(LANES * lines).zip(rows.chunks_exact_mut(Row::count::<D>()));
+        for (b, (records, rows)) in blocks.enumerate() {
             let i = first + b * LANES;
-            eight::<D, L>(particles, matter, i, record, rows);
+            prefetch(records, AHEAD * LANES * lines, LANES * lines);
+            prefetch(rows, AHEAD * Row::count::<D>(), Row::count::<D>());
+            let state = eight::<D, L>(particles, matter, i, rows);
+            match prepared {
+                Prepared::State => store_records(&state, records, lines),
+                Prepared::ConstantSides => {
+                    store_records(&constant_sides::<D, L>(&state, rows), records, lines)
+                }
+            }
             for lane in particles.len().saturating_sub(i)..LANES {
-                fill(&mut record[lane * D::STATE_LINES..][..D::STATE_LINES], rows, lane);
+                fill::<D>(prepared, &mut records[lane * lines..][..lines], rows, lane);
             }
         }
     }
 }
 
+/// The sides of eight contacts: the state as it is. Neither slopes nor correction are read in a scheme without reconstruction.
+#[inline(always)]
+fn constant_sides<D: SolidDimension, L: Lanes>(
+    state: &D::StateRecord<L>,
+    rows: &[Line],
+) -> D::SidesRecord<L> {
+    let mut sides = D::SidesRecord::<L>::splat(L::zero());
+    for k in 0..=State::volume::<D>() {
+        sides[k] = state[k];
+    }
+    sides[Sides::longitudinal::<D>()] = L::load(&rows[Row::LONGITUDINAL].0);
+    sides[Sides::transverse::<D>()] = L::load(&rows[Row::TRANSVERSE].0);
+    for f in 0..D::COUNT + D::STRESS_COUNT {
+        sides[Sides::fields::<D>() + f] = state[State::fields::<D>() + f];
+    }
+    sides
+}
+
 /// Lanes behind the last particle: no volume, nothing that could trap.
 #[cold]
-fn fill(record: &mut [Line], rows: &mut [Line], lane: usize) {
+fn fill<D: SolidDimension>(prepared: Prepared, record: &mut [Line], rows: &mut [Line], lane: usize) {
     record.iter_mut().for_each(|line| line.0 = [0.0; LANES]);
+    if prepared == Prepared::ConstantSides {
+        for k in [Sides::longitudinal::<D>(), Sides::transverse::<D>()] {
+            record[k / LANES].0[k % LANES] = 1.0;
+        }
+    }
     for row in 0..Row::COUNT_BEFORE {
         rows[row].0[lane] = 0.0;
     }
@@ -81,15 +119,14 @@ fn fill(record: &mut [Line], rows: &mut [Line], lane: usize) {
     rows[Row::TRANSVERSE].0[lane] = 1.0;
 }
 
-/// The record and the rows of eight particles from number `i` on.
+/// The rows of eight particles from number `i` on, and their state.
 #[inline(always)]
 fn eight<D: SolidDimension, L: Lanes>(
     particles: &Particles<D>,
     matter: &Matter,
     i: usize,
-    record: &mut [Line],
     rows: &mut [Line],
-) {
+) -> D::StateRecord<L> {
     let end = (i + LANES).min(particles.len());
     let constraint = &particles.constraint[i..end];
     let eight = matter.eight::<L>(
@@ -114,7 +151,6 @@ fn eight<D: SolidDimension, L: Lanes>(
         numbers[State::fields::<D>() + D::COUNT + k] =
             if k < D::COUNT { deviator - pressure } else { deviator };
     }
-    store_records(&numbers, record, D::STATE_LINES);
     let (zero, half, shear) = (L::zero(), L::splat(0.5), eight.numbers.shear_modulus);
     let (mut free, mut evolves) = (L::one(), L::one());
     if constraint.iter().any(|&c| c != Constraint::Free) {
@@ -132,6 +168,7 @@ fn eight<D: SolidDimension, L: Lanes>(
     let stiffness = L::splat(4.0 / 3.0).mul_add(shear, modulus);
     (density * stiffness).sqrt().store(&mut rows[Row::LONGITUDINAL].0);
     (density * shear).sqrt().store(&mut rows[Row::TRANSVERSE].0);
+    numbers
 }
 
 /// 1 where a constraint is wanted, else 0.
@@ -142,28 +179,6 @@ fn lanes_where<L: Lanes>(constraint: &[Constraint], wanted: impl Fn(Constraint) 
         lanes[l] = f64::from(wanted(constraint[l]));
     }
     L::load(&lanes)
-}
-
-/// Records of the second pass for a scheme without reconstruction: the state as it is, no correction.
-pub fn piecewise_constant_sides<D: SolidDimension>(state: &[Line], rows: &[Line], sides: &mut [Line]) {
-    let tiles = sides.par_chunks_mut(LANES * D::SIDES_LINES).enumerate();
-    tiles.for_each(|(block, sides)| {
-        let rows = &rows[block * Row::count::<D>()..];
-        for (lane, side) in sides.chunks_exact_mut(D::SIDES_LINES).enumerate() {
-            let from = (block * LANES + lane) * D::STATE_LINES;
-            let get = |k: usize| state[from + k / LANES].0[k % LANES];
-            let mut put = |k: usize, value: f64| side[k / LANES].0[k % LANES] = value;
-            (0..=D::COUNT).for_each(|k| put(k, get(k)));
-            put(Sides::longitudinal::<D>(), rows[Row::LONGITUDINAL].0[lane]);
-            put(Sides::transverse::<D>(), rows[Row::TRANSVERSE].0[lane]);
-            for f in 0..D::COUNT + D::STRESS_COUNT {
-                put(Sides::fields::<D>() + f, get(State::fields::<D>() + f));
-            }
-            for k in 0..D::STRESS_COUNT {
-                put(Sides::correction::<D>() + k, if k < D::COUNT { 1.0 } else { 0.0 });
-            }
-        }
-    });
 }
 
 /// Stress of particle `i` [Pa]: all stored components, the out-of-plane one too.

@@ -67,6 +67,26 @@ impl Sides {
     }
 }
 
+/// The records that the equations of state fill.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prepared {
+    /// [`State`], for gradients.
+    State,
+    /// [`Sides`] up to the fields, as they are: for a scheme without reconstruction.
+    ConstantSides,
+}
+
+impl Prepared {
+    /// Cache lines of a record.
+    #[inline(always)]
+    pub fn lines<D: SolidDimension>(self) -> usize {
+        match self {
+            Self::State => D::STATE_LINES,
+            Self::ConstantSides => D::CONSTANT_SIDES_LINES,
+        }
+    }
+}
+
 /// Offsets in the record of time-centering: that of the second pass, where the impedances of marked particles make room for δ
 /// once the contacts are solved.
 pub struct Centered;

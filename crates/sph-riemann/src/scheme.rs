@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use sph_core::kernel::KernelFamily;
 
 use crate::limiter::Limiter;
+use crate::record::Prepared;
 
 /// The named schemes. They share one step; see [`crate::simulation`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -26,6 +27,11 @@ impl Scheme {
     /// True if gradients are needed before the contact.
     pub fn reconstructs(self) -> bool {
         self != Self::Csph
+    }
+
+    /// The records that its first pair loop reads.
+    pub(crate) fn prepared(self) -> Prepared {
+        if self.reconstructs() { Prepared::State } else { Prepared::ConstantSides }
     }
 
     /// True if sides are advanced by half a step before the contact.

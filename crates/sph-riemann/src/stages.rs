@@ -7,7 +7,7 @@ use sph_core::neighbors::{NeighborLists, Reach};
 use crate::dimension::SolidDimension;
 use crate::error::StepError;
 use crate::pass::{Deltas, Pass, Sizes, Smoothing, TilePairs};
-use crate::record::Row;
+use crate::record::{Prepared, Row};
 use crate::scheme::{FaceClosure, SurfaceTreatment};
 use crate::simulation::{Simulation, StepReport};
 use crate::time_step::{TimeStepReason, courant_step, signal_speed};
@@ -74,8 +74,12 @@ impl<D: SolidDimension> Simulation<D> {
         let (records, padded) = (self.lists.n_records(), self.lists.n_padded());
         let tiles = self.lists.tiles().len();
         let s = &mut self.scratch;
-        s.state.resize((records * D::STATE_LINES).max(padded * D::SUM_LINES), Line::default());
-        s.sides.resize(records * D::SIDES_LINES, Line::default());
+        let [of_state, of_sides] = match self.settings.scheme.prepared() {
+            Prepared::State => [D::STATE_LINES, D::SIDES_LINES],
+            Prepared::ConstantSides => [0, D::CONSTANT_SIDES_LINES],
+        };
+        s.state.resize((records * of_state).max(padded * D::SUM_LINES), Line::default());
+        s.sides.resize(records * of_sides, Line::default());
         s.rows.resize(padded / LANES * Row::count::<D>(), Line::default());
         s.pairs.resize(tiles, TilePairs::default());
         let size = &self.particles.size;
@@ -97,11 +101,12 @@ impl<D: SolidDimension> Simulation<D> {
         }
     }
 
-    /// Equations of state, and the records that the first pass reads.
+    /// Equations of state, and the records that the first pair loop reads.
     pub(crate) fn prepare(&mut self) {
-        let s = &mut self.scratch;
-        prepare::prepare(&self.particles, &self.matter, self.instructions, &mut s.state, &mut s.rows);
-        self.lists.halo().refresh(&mut s.state, D::STATE_LINES, self.lists.n_padded());
+        let (s, prepared) = (&mut self.scratch, self.settings.scheme.prepared());
+        let records = if prepared == Prepared::State { &mut s.state } else { &mut s.sides };
+        prepare::prepare(&self.particles, &self.matter, self.instructions, prepared, records, &mut s.rows);
+        self.lists.halo().refresh(records, prepared.lines::<D>(), self.lists.n_padded());
     }
 
     pub(crate) fn choose_time_step(&mut self, limit: f64) -> Result<(f64, TimeStepReason), StepError> {
@@ -128,29 +133,25 @@ impl<D: SolidDimension> Simulation<D> {
         Pass { lists: &self.lists, smoothing, surface, records, half_step, instructions }
     }
 
-    /// The records that the contact pass reads: sides half a step later with their slopes, or the state as it is.
+    /// The records that the contact pass reads: sides half a step later with their slopes. Without reconstruction the
+    /// equations of state have filled them.
     pub(crate) fn find_sides(&mut self, time_step: f64) {
-        let padded = self.lists.n_padded();
+        if !self.settings.scheme.reconstructs() {
+            return;
+        }
         let mut sides = std::mem::take(&mut self.scratch.sides);
         let mut rows = std::mem::take(&mut self.scratch.rows);
-        if self.settings.scheme.reconstructs() {
-            let mut rule = std::mem::take(&mut self.scratch.rule);
-            let s = &self.scratch;
-            let by_rule = surface::marks(&self.lists, &self.settings, &s.state, s.sizes(), &mut rule);
-            let half_step = if self.settings.scheme.is_time_centered() { 0.5 * time_step } else { 0.0 };
-            let s = &self.scratch;
-            self.pass(&s.state, self.settings.surface, half_step).gradients(
-                by_rule.then_some(rule.as_slice()),
-                &mut sides,
-                &mut rows,
-            );
-            self.scratch.rule = rule;
-        } else {
-            let own = &mut sides[..padded * D::SIDES_LINES];
-            prepare::piecewise_constant_sides::<D>(&self.scratch.state, &rows, own);
-        }
-        self.lists.halo().refresh(&mut sides, D::SIDES_LINES, padded);
-        (self.scratch.sides, self.scratch.rows) = (sides, rows);
+        let mut rule = std::mem::take(&mut self.scratch.rule);
+        let s = &self.scratch;
+        let by_rule = surface::marks(&self.lists, &self.settings, &s.state, s.sizes(), &mut rule);
+        let half_step = if self.settings.scheme.is_time_centered() { 0.5 * time_step } else { 0.0 };
+        self.pass(&s.state, self.settings.surface, half_step).gradients(
+            by_rule.then_some(rule.as_slice()),
+            &mut sides,
+            &mut rows,
+        );
+        self.lists.halo().refresh(&mut sides, D::SIDES_LINES, self.lists.n_padded());
+        (self.scratch.sides, self.scratch.rows, self.scratch.rule) = (sides, rows, rule);
     }
 
     /// Forces, powers and raw velocity gradients, without what tiles have for each other.

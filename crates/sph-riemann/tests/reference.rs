@@ -14,7 +14,7 @@ use sph_riemann::dimension::symmetric;
 use sph_riemann::matter::Matter;
 use sph_riemann::pass::{Pass, Sizes, Smoothing, TilePairs, collect};
 use sph_riemann::prepare::prepare;
-use sph_riemann::record::{Row, Sides, State, Sums};
+use sph_riemann::record::{Prepared, Row, Sides, State, Sums};
 use sph_riemann::{Limiter, Settings, Simulation, SolidDimension, SurfaceTreatment};
 
 /// Low, so that it acts on many particles.
@@ -45,7 +45,7 @@ impl<D: SolidDimension> Passes<D> {
         let size = vec![common::SIZE; records];
         let matter = Matter::new(simulation.materials().to_vec());
         let instructions = InstructionSet::detect();
-        prepare(simulation.particles(), &matter, instructions, &mut state, &mut rows);
+        prepare(simulation.particles(), &matter, instructions, Prepared::State, &mut state, &mut rows);
         lists.halo().refresh(&mut state, D::STATE_LINES, padded);
         let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, Sizes::Each(&size));
         let pass = Pass { lists, smoothing, surface, records: &state, half_step: 0.0, instructions };

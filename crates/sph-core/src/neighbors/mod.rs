@@ -128,7 +128,10 @@ impl<D: Dimension> NeighborLists<D> {
     /// Bytes that the lists take.
     pub fn bytes(&self) -> usize {
         let halo = self.halo.len() * (4 + size_of::<D::Vector>());
-        self.tiles.iter().map(TileLists::bytes).sum::<usize>() + halo + self.n_particles * 8 * D::COUNT + self.motion.bytes()
+        self.tiles.iter().map(TileLists::bytes).sum::<usize>()
+            + halo
+            + self.n_particles * 8 * D::COUNT
+            + self.motion.bytes()
     }
 
     /// True if some pair that is not listed may have come within its support: see the module `motion`.

@@ -91,7 +91,8 @@ impl<D: Dimension> Motion<D> {
             let members = &order[start[c] as usize..start[c + 1] as usize];
             *range = range_of::<D>(members, then, now);
         });
-        let all = length::<D>(&self.ranges.iter().fold(nowhere::<D>(), |all, range| united::<D>(&all, range)));
+        let all =
+            length::<D>(&self.ranges.iter().fold(nowhere::<D>(), |all, range| united::<D>(&all, range)));
         let [skin, _, of_all] = self.allowed;
         let layers = self.count[0];
         all > of_all || all > skin && (0..layers).into_par_iter().any(|x| self.layer_is_too_long(x))
@@ -137,11 +138,7 @@ impl<D: Dimension> Motion<D> {
     /// A cell coordinate, closed across a periodic boundary; `None` beyond an open one.
     #[inline]
     fn inside(&self, axis: usize, at: usize) -> Option<usize> {
-        if at < self.count[axis] {
-            Some(at)
-        } else {
-            self.periodic[axis].then_some(at % self.count[axis])
-        }
+        if at < self.count[axis] { Some(at) } else { self.periodic[axis].then_some(at % self.count[axis]) }
     }
 }
 

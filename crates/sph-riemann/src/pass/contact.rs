@@ -109,7 +109,8 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
         let ahead = Ahead::of(pass.lists, index);
         for b in 0..lists.n_blocks() {
             prefetch(sums, b * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
-            ahead.records(b, pass.records, D::SIDES_LINES, Left::<D, L, RECONSTRUCT>::LINES);
+            let lines = Left::<D, L, RECONSTRUCT>::LINES;
+            ahead.records(b, pass.records, lines, lines);
             let (slots, targets) = lists.pairs(b);
             let left = Left::<D, L, RECONSTRUCT>::load(
                 pass,
@@ -153,16 +154,15 @@ struct Left<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> {
 }
 
 impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT> {
-    /// Lines of a record that are read.
-    const LINES: usize =
-        if RECONSTRUCT { D::SIDES_LINES } else { (Sides::correction::<D>() - 1) / LANES + 1 };
+    /// Lines of a record.
+    const LINES: usize = if RECONSTRUCT { D::SIDES_LINES } else { D::CONSTANT_SIDES_LINES };
 
     #[inline(always)]
     fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
         let mut record = D::SidesRecord::<L>::splat(L::zero());
         for line in 0..Self::LINES {
             // SAFETY: indices of particles are below `n_padded`, and records reach to `n_records`.
-            unsafe { load_line(&mut record, pass.records, D::SIDES_LINES, line, indices) };
+            unsafe { load_line(&mut record, pass.records, Self::LINES, line, indices) };
         }
         let volume = record[Sides::volume::<D>()];
         let twice_volume = (volume + volume).abs();
@@ -206,7 +206,7 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         let mut reaching = 0;
         for (k, to) in (0..slots.len()).zip(approaches) {
             // SAFETY: entries of a list are below `n_records`, the length of the records.
-            let first_line = unsafe { L::load_records(pass.records, D::SIDES_LINES, 0, &slots[k]) };
+            let first_line = unsafe { L::load_records(pass.records, Self::LINES, 0, &slots[k]) };
             let mut dx = D::Axes::<L>::splat(L::zero());
             for a in 0..D::COUNT {
                 dx[a] = first_line[a] - self.record[a];
@@ -249,7 +249,7 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         }
         for line in 1..Self::LINES {
             // SAFETY: entries of a list are below `n_records`, the length of the records.
-            unsafe { load_line(&mut right, pass.records, D::SIDES_LINES, line, slot) };
+            unsafe { load_line(&mut right, pass.records, Self::LINES, line, slot) };
         }
         let (mut gradient, mut du, mut right_velocity) = (approach.dx, approach.dx, approach.dx);
         for a in 0..D::COUNT {

@@ -94,7 +94,7 @@ impl<D: SolidDimension> Pass<'_, D> {
     /// # Panics
     /// As [`Pass::gradients`].
     pub fn contacts(&self, limiter: Option<Limiter>, sums: &mut [Line], pairs: &mut [TilePairs]) {
-        self.check_records(D::SIDES_LINES);
+        self.check_records(if limiter.is_some() { D::SIDES_LINES } else { D::CONSTANT_SIDES_LINES });
         self.run_with_buffers(sums, pairs, |index, pairs, buffer, own| {
             D::run(self, Tile { index, work: Work::Contacts { limiter, pairs, buffer, sums: own } });
             let from = &buffer[..own.len()];

@@ -23,7 +23,11 @@ impl<'a> Found<'a> {
     fn of<D: SolidDimension>(context: &Context<'a>, i: usize, sums: &'a [Line]) -> Self {
         Self {
             rows: &context.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
-            sides: &context.sides[i * D::SIDES_LINES..][..D::SIDES_LINES],
+            sides: if context.settings.scheme.reconstructs() {
+                &context.sides[i * D::SIDES_LINES..][..D::SIDES_LINES]
+            } else {
+                &[]
+            },
             sums,
             lane: i % LANES,
         }

@@ -21,13 +21,11 @@ struct Found<'a> {
 
 impl<'a> Found<'a> {
     fn of<D: SolidDimension>(context: &Context<'a>, i: usize, sums: &'a [Line]) -> Self {
+        let reconstructs = context.settings.scheme.reconstructs();
+        let lines = if reconstructs { D::SIDES_LINES } else { D::CONSTANT_SIDES_LINES };
         Self {
             rows: &context.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
-            sides: if context.settings.scheme.reconstructs() {
-                &context.sides[i * D::SIDES_LINES..][..D::SIDES_LINES]
-            } else {
-                &[]
-            },
+            sides: &context.sides[i * lines..][..lines],
             sums,
             lane: i % LANES,
         }

@@ -72,6 +72,7 @@ impl<D: SolidDimension> Simulation<D> {
             }
             let positions: D::AxisColumns = Components::from_fn(|a| positions[a].clone());
             simulation.find_neighbors(&positions);
+            simulation.motion_share = simulation.lists.motion_share(&simulation.particles.position);
         }
         Ok(simulation)
     }

@@ -39,6 +39,8 @@ pub struct Simulation<D: SolidDimension> {
     pub(crate) interventions: Interventions,
     pub(crate) lists: NeighborLists<D>,
     pub(crate) lists_valid: bool,
+    /// How much of what the lists allow particles have moved against each other.
+    pub(crate) motion_share: f64,
     pub(crate) scratch: Scratch,
     pub(crate) stage_times: StageTimes,
     pub(crate) instructions: InstructionSet,
@@ -96,6 +98,7 @@ impl<D: SolidDimension> Simulation<D> {
             interventions: Interventions::default(),
             lists: NeighborLists::default(),
             lists_valid: false,
+            motion_share: 0.0,
             scratch: Scratch::default(),
             stage_times: StageTimes::default(),
             instructions: InstructionSet::detect(),

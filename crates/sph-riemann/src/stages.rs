@@ -1,5 +1,7 @@
 //! The stages of a step, and the arrays that they hand on to each other.
 
+use std::time::Instant;
+
 use sph_core::lanes::{LANES, Line};
 use sph_core::neighbors::cell_grid::sort_particles;
 use sph_core::neighbors::{NeighborLists, Reach};
@@ -10,9 +12,13 @@ use crate::pass::{Deltas, Pass, Sizes, Smoothing, TilePairs};
 use crate::record::{Prepared, Row};
 use crate::scheme::{FaceClosure, SurfaceTreatment};
 use crate::simulation::{Simulation, StepReport};
+use crate::stage_times::StepStage;
 use crate::time_step::{TimeStepReason, courant_step, signal_speed};
 use crate::update::{Outcome, StepEnd, TileReport, first_broken, update};
 use crate::{prepare, surface, volume};
+
+/// Volume sums while lists live, that of the rebuild included.
+const MEASURES_A_SKIN: f64 = 3.0;
 
 /// Arrays that live as long as the neighbor lists.
 #[derive(Default)]
@@ -70,7 +76,7 @@ impl<D: SolidDimension> Simulation<D> {
     /// Lists for the particles at the given positions, and scratch of their size.
     pub(crate) fn find_neighbors(&mut self, positions: &D::AxisColumns) {
         self.lists = NeighborLists::build(positions, &self.particles.size, &self.domain, self.reach());
-        self.lists_valid = true;
+        (self.lists_valid, self.motion_share) = (true, 0.0);
         let (records, padded) = (self.lists.n_records(), self.lists.n_padded());
         let tiles = self.lists.tiles().len();
         let s = &mut self.scratch;
@@ -93,6 +99,20 @@ impl<D: SolidDimension> Simulation<D> {
         }
         s.reports.resize(tiles, TileReport::default());
         s.steps.resize(tiles, (0.0, 0));
+    }
+
+    /// Whether the lists still hold, and volume sums anew where particles have moved by a further share of the skin against
+    /// each other: how closely a density follows its packing must not hang on how long lists live.
+    fn look_at_motion(&mut self) {
+        let before =
+            std::mem::replace(&mut self.motion_share, self.lists.motion_share(&self.particles.position));
+        self.lists_valid = self.motion_share <= 1.0;
+        let part = |share: f64| (share * MEASURES_A_SKIN).floor();
+        if self.lists_valid && part(self.motion_share) > part(before) {
+            let mut clock = Instant::now();
+            self.measure_volumes();
+            self.stage_times.add(StepStage::Volume, &mut clock);
+        }
     }
 
     pub(crate) fn measure_volumes(&mut self) {
@@ -226,7 +246,7 @@ impl<D: SolidDimension> Simulation<D> {
         if let Some(error) = first_broken(&self.scratch.reports, &self.particles, end) {
             return Err(error);
         }
-        self.lists_valid = !self.lists.outlived(&self.particles.position);
+        self.look_at_motion();
         let impulse = D::vector(|a| report.input.impulse[a]);
         Ok(StepReport {
             time_step,

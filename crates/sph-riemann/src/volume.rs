@@ -1,7 +1,8 @@
 //! Volume consistency: shut pores must fill space.
 //!
 //! The density of the continuity equation drifts from the particles' packing where plastic strain is large. At each
-//! rebuild of the lists the volume sum with a wide kernel is held against that of a perfect lattice,
+//! rebuild of the lists, and whenever particles have moved by a third of the skin against each other, the volume sum with a wide
+//! kernel is held against that of a perfect lattice,
 //!
 //! ```text
 //! S_i  = V_i W(0; h_S) + Σ_j V_j W(r_ij; h_S),  h_S = width × D,   ΔS_i = S_i - S_lattice
@@ -9,7 +10,7 @@
 //!
 //! with S_lattice of the square lattice in the plane and of the cubic one in space (other lattices of the same density
 //! differ by 2.5e-4 at most). On a disordered packing the sums scatter by more than the tolerance; each particle may then
-//! be held against its own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next rebuild the density relaxes, besides the flow's own rate, with
+//! be held against its own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next sum the density relaxes, besides the flow's own rate, with
 //!
 //! ```text
 //! d(ln ρ)/dt += κ (c/h)(ΔS - tol)                  where ΔS > tol
@@ -48,8 +49,11 @@ pub fn measure<D: Dimension>(
     }
     let kernel = KernelFamily::WendlandC2;
     let reach = kernel.support() * settings.width * largest;
-    let halo = Halo::<D>::build(&particles.position, domain, reach);
-    let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(&particles.position, a));
+    // Particles may have left the box since their lists were built.
+    let inside = |a: usize| particles.position[a].iter().map(|&x| domain.wrap(a, x)).collect();
+    let own: D::AxisColumns = Components::from_fn(inside);
+    let halo = Halo::<D>::build(&own, domain, reach);
+    let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(&own, a));
     let points = CellSortedPoints::<D>::new(&all, 0.5 * reach);
     let n = particles.len();
     let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
@@ -63,7 +67,7 @@ pub fn measure<D: Dimension>(
     let perfect = if D::COUNT == 2 { Lattice::Square } else { Lattice::Cubic };
     let lattice = lattice_volume_sum(perfect, settings.width, kernel);
     let sum = &VolumeSum { points: &points, position: &position, volume: &volume, imposed: &imposed, kernel };
-    let (own, size) = (&particles.position, &particles.size);
+    let (own, size) = (&own, &particles.size);
     let (width, from_start) = (settings.width, settings.reference == PackingReference::Start);
     let columns = particles.packing_excess.par_chunks_mut(TILE);
     columns.zip(particles.packing_reference.par_chunks_mut(TILE)).enumerate().for_each(

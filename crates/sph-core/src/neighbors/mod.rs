@@ -136,6 +136,12 @@ impl<D: Dimension> NeighborLists<D> {
 
     /// True if some pair that is not listed may have come within its support: see the module `motion`.
     pub fn outlived(&mut self, position: &D::AxisColumns) -> bool {
-        self.motion.is_too_long(&self.reference, position)
+        self.motion_share(position) > 1.0
+    }
+
+    /// How far particles have moved against each other since the lists were built, as a share of what they allow: lists with
+    /// more than 1 are outlived.
+    pub fn motion_share(&mut self, position: &D::AxisColumns) -> f64 {
+        self.motion.share(&self.reference, position)
     }
 }

@@ -83,9 +83,9 @@ impl<D: Dimension> Motion<D> {
         (self.order.len() + self.start.len()) * 4 + self.ranges.len() * size_of::<Range<D>>()
     }
 
-    /// True if particles may have moved farther against each other than lists hold, from the positions `then` to those
-    /// `now`.
-    pub fn is_too_long(&mut self, then: &[Vec<f64>], now: &D::AxisColumns) -> bool {
+    /// How far particles have moved against each other from the positions `then` to those `now`, as a share of what the
+    /// lists allow: above 1 they no longer hold.
+    pub fn share(&mut self, then: &[Vec<f64>], now: &D::AxisColumns) -> f64 {
         let (order, start) = (&self.order, &self.start);
         self.ranges.par_iter_mut().with_min_len(256).enumerate().for_each(|(c, range)| {
             let members = &order[start[c] as usize..start[c + 1] as usize];
@@ -93,27 +93,29 @@ impl<D: Dimension> Motion<D> {
         });
         let all =
             length::<D>(&self.ranges.iter().fold(nowhere::<D>(), |all, range| united::<D>(&all, range)));
-        let [skin, _, of_all] = self.allowed;
-        let layers = self.count[0];
-        all > of_all || all > skin && (0..layers).into_par_iter().any(|x| self.layer_is_too_long(x))
+        let of_windows = (0..self.count[0]).into_par_iter().map(|x| self.share_of_layer(x));
+        of_windows.reduce(|| 0.0, f64::max).max(share(all, self.allowed[2]))
     }
 
-    /// Whether a window that begins in the cells with the first coordinate `x` holds too long a range.
-    fn layer_is_too_long(&self, x: usize) -> bool {
+    /// The largest share of the windows that begin in the cells with the first coordinate `x`.
+    fn share_of_layer(&self, x: usize) -> f64 {
         let inner = D::COUNT - 1;
         let middle = if D::COUNT == 3 { self.count[1] } else { 1 };
-        (2..=3).any(|n| {
-            let allowed = self.allowed[n - 2];
+        let mut largest = 0.0_f64;
+        for n in 2..=3 {
             let ends = self.count[inner] + if self.periodic[inner] { n - 1 } else { 0 };
-            (0..middle).any(|y| {
+            let mut longest = 0.0_f64;
+            for y in 0..middle {
                 let mut recent = [nowhere::<D>(); 3];
-                (0..ends).any(|end| {
+                for end in 0..ends {
                     recent[end % n] = self.column([x, y, end % self.count[inner]], n);
                     let window = recent[..n].iter().fold(nowhere::<D>(), |w, range| united::<D>(&w, range));
-                    length::<D>(&window) > allowed
-                })
-            })
-        })
+                    longest = longest.max(length::<D>(&window));
+                }
+            }
+            largest = largest.max(share(longest, self.allowed[n - 2]));
+        }
+        largest
     }
 
     /// Range of the cells with one coordinate along the last axis, over `n` cells along each other axis, from `at` on.
@@ -186,6 +188,11 @@ fn range_of<D: Dimension>(members: &[u32], then: &[Vec<f64>], now: &D::AxisColum
         }
     }
     range
+}
+
+/// A length over what is allowed.
+fn share(length: f64, allowed: f64) -> f64 {
+    if length > 0.0 { length / allowed } else { 0.0 }
 }
 
 /// Length of a range [m], none without particles.

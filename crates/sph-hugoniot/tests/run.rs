@@ -102,12 +102,15 @@ fn a_failed_point_is_reported_and_the_others_go_on() {
     );
     let (code, message) = run(folder.path(), &case, &["--up", "300,1000", "--out", "out", "--quiet"]);
     assert_eq!(code, 3, "{message}");
-    assert!(message.contains("u_p = 1000 m/s failed: particle ") && message.contains("hint: "), "{message}");
+    // A particle breaks, or the time step for it falls to nothing: the last bits decide which is seen first.
+    let told = |text: &str| text.contains("failed: ") && text.contains("particle ");
+    assert!(message.contains("u_p = 1000 m/s failed: "), "{message}");
+    assert!(told(&message) && message.contains("hint: "), "{message}");
     let csv = std::fs::read_to_string(folder.path().join("out/hugoniot.csv")).unwrap();
     let rows: Vec<&str> = csv.lines().filter(|l| !l.starts_with('#')).collect();
     assert_eq!(rows.len(), 3, "{csv}");
     assert!(rows[1].starts_with("300,") && !rows[1].contains("failed"), "{csv}");
-    assert!(rows[2].starts_with("1000,") && rows[2].contains("failed: particle "), "{csv}");
+    assert!(rows[2].starts_with("1000,") && told(rows[2]), "{csv}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Volume consistency: shut pores must fill space.
 //!
-//! The density of the continuity equation drifts from the particles' packing where plastic strain is large. At each
-//! rebuild of the lists, and whenever particles have moved by a third of the skin against each other, the volume sum with a wide
-//! kernel is held against that of a perfect lattice,
+//! The density of the continuity equation drifts from the particles' packing where plastic strain is large. At each rebuild of
+//! the lists, and whenever particles have moved by a third of the skin against each other, the volume sum with a wide kernel is
+//! held against that of a perfect lattice,
 //!
 //! ```text
 //! S_i  = V_i W(0; h_S) + Σ_j V_j W(r_ij; h_S),  h_S = width × D,   ΔS_i = S_i - S_lattice

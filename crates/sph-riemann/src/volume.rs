@@ -130,6 +130,8 @@ impl<D: Dimension> VolumeSum<'_, D> {
         let reach = self.kernel.support() * h;
         let inverse_h = L::splat(1.0 / h);
         let support = L::splat(self.kernel.support());
+        // A little more than the support, so that rounding leaves nobody out.
+        let reach_squared = L::splat(reach * reach * (1.0 + 1e-12));
         let lane = L::load(&std::array::from_fn(|l| l as f64));
         let (mut total, mut imposed) = (L::zero(), L::zero());
         self.points.runs_near(point, reach, |first, end| {
@@ -140,6 +142,9 @@ impl<D: Dimension> VolumeSum<'_, D> {
                 for a in 0..D::COUNT {
                     let d = load(&self.position[a]) - L::splat(point[a]);
                     r2 = d.mul_add(d, r2);
+                }
+                if r2.less_mask(reach_squared) == 0 {
+                    continue; // All are beyond the support: zeros would be added.
                 }
                 let q = r2.sqrt() * inverse_h;
                 let inside = lane.select_less(L::splat((end - p) as f64), load(self.volume), L::zero());

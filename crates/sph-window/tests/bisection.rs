@@ -18,7 +18,9 @@ fn settings(search: Search) -> WindowSettings {
 
 #[test]
 fn bisection_and_tracking_agree() {
-    let bisection = Bisection { tolerance: 4.0, ..Bisection::default() };
+    // In the three cells of the published trials the waves in so small a box outdo the drift: by the last bits of a run the
+    // search ends 2 to 6 % beside the front.
+    let bisection = Bisection { tolerance: 4.0, samples: 8.0, ..Bisection::default() };
     let mut searched = window(porous(), settings(Search::Bisection(bisection)));
     while searched.is_searching() {
         searched.step().unwrap();

@@ -1,7 +1,7 @@
 //! Volume consistency: shut pores must fill space.
 //!
 //! The density of the continuity equation drifts from the particles' packing where plastic strain is large. At each rebuild of
-//! the lists, and whenever particles have moved by a third of the skin against each other, the volume sum with a wide kernel is
+//! the lists, and whenever particles have moved by a further third of the skin against each other, the volume sum with a wide kernel is
 //! held against that of a perfect lattice,
 //!
 //! ```text
@@ -10,7 +10,8 @@
 //!
 //! with S_lattice of the square lattice in the plane and of the cubic one in space (other lattices of the same density
 //! differ by 2.5e-4 at most). On a disordered packing the sums scatter by more than the tolerance; each particle may then
-//! be held against its own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next sum the density relaxes, besides the flow's own rate, with
+//! be held against its own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next sum the density
+//! relaxes, besides the flow's own rate, with
 //!
 //! ```text
 //! d(ln ρ)/dt += κ (c/h)(ΔS - tol)                  where ΔS > tol

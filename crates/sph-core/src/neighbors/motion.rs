@@ -91,50 +91,61 @@ impl<D: Dimension> Motion<D> {
             let members = &order[start[c] as usize..start[c + 1] as usize];
             *range = range_of::<D>(members, then, now);
         });
-        let all =
-            length::<D>(&self.ranges.iter().fold(nowhere::<D>(), |all, range| united::<D>(&all, range)));
-        let of_windows = (0..self.count[0]).into_par_iter().map(|x| self.share_of_layer(x));
-        of_windows.reduce(|| 0.0, f64::max).max(share(all, self.allowed[2]))
+        let layers = (0..self.count[0]).into_par_iter().map(|x| self.layer(x));
+        let (longest, all) = layers.reduce(
+            || ([0.0; 2], nowhere::<D>()),
+            |(a, all), (b, range)| (std::array::from_fn(|n| a[n].max(b[n])), united::<D>(&all, &range)),
+        );
+        let squares = [longest[0], longest[1], length_squared::<D>(&all)];
+        squares
+            .iter()
+            .zip(self.allowed)
+            .map(|(square, allowed)| share(square.sqrt(), allowed))
+            .fold(0.0, f64::max)
     }
 
-    /// The largest share of the windows that begin in the cells with the first coordinate `x`.
-    fn share_of_layer(&self, x: usize) -> f64 {
+    /// Squares of the longest ranges in windows of two and of three cells that begin in the cells with the first coordinate
+    /// `x` [m²], and the range of these cells.
+    fn layer(&self, x: usize) -> ([f64; 2], Range<D>) {
         let inner = D::COUNT - 1;
         let middle = if D::COUNT == 3 { self.count[1] } else { 1 };
-        let mut largest = 0.0_f64;
-        for n in 2..=3 {
-            let ends = self.count[inner] + if self.periodic[inner] { n - 1 } else { 0 };
-            let mut longest = 0.0_f64;
-            for y in 0..middle {
-                let mut recent = [nowhere::<D>(); 3];
-                for end in 0..ends {
-                    recent[end % n] = self.column([x, y, end % self.count[inner]], n);
-                    let window = recent[..n].iter().fold(nowhere::<D>(), |w, range| united::<D>(&w, range));
-                    longest = longest.max(length::<D>(&window));
-                }
+        // Windows across the periodic boundary come last; those that come twice do no harm.
+        let again = if self.periodic[inner] { self.count[inner].min(2) } else { 0 };
+        let (mut longest, mut all) = ([0.0_f64; 2], nowhere::<D>());
+        for y in 0..middle {
+            let (mut last_two, mut last_three, mut before) = (nowhere::<D>(), nowhere::<D>(), nowhere::<D>());
+            for z in (0..self.count[inner]).chain(0..again) {
+                let [one, two, three] = self.columns([x, y, z]);
+                all = united::<D>(&all, &one);
+                longest[0] = longest[0].max(length_squared::<D>(&united::<D>(&last_two, &two)));
+                let pair = united::<D>(&last_three, &three);
+                longest[1] = longest[1].max(length_squared::<D>(&united::<D>(&before, &pair)));
+                (last_two, before, last_three) = (two, last_three, three);
             }
-            largest = largest.max(share(longest, self.allowed[n - 2]));
         }
-        largest
+        (longest, all)
     }
 
-    /// Range of the cells with one coordinate along the last axis, over `n` cells along each other axis, from `at` on.
+    /// Ranges of the cells with one coordinate along the last axis, over one, two and three cells along each other axis,
+    /// from `at` on.
     #[inline]
-    fn column(&self, at: [usize; 3], n: usize) -> Range<D> {
+    fn columns(&self, at: [usize; 3]) -> [Range<D>; 3] {
         let [x, y, last] = at;
-        let mut range = nowhere::<D>();
-        for x in x..x + n {
-            let Some(x) = self.inside(0, x) else { break };
+        let mut ranges = [nowhere::<D>(); 3];
+        for i in 0..3 {
+            let Some(x) = self.inside(0, x + i) else { break };
             if D::COUNT == 2 {
-                range = united::<D>(&range, &self.ranges[x * self.count[1] + last]);
+                let cell = &self.ranges[x * self.count[1] + last];
+                (i..3).for_each(|n| ranges[n] = united::<D>(&ranges[n], cell));
                 continue;
             }
-            for y in y..y + n {
-                let Some(y) = self.inside(1, y) else { break };
-                range = united::<D>(&range, &self.ranges[(x * self.count[1] + y) * self.count[2] + last]);
+            for j in 0..3 {
+                let Some(y) = self.inside(1, y + j) else { break };
+                let cell = &self.ranges[(x * self.count[1] + y) * self.count[2] + last];
+                (i.max(j)..3).for_each(|n| ranges[n] = united::<D>(&ranges[n], cell));
             }
         }
-        range
+        ranges
     }
 
     /// A cell coordinate, closed across a periodic boundary; `None` beyond an open one.
@@ -195,8 +206,9 @@ fn share(length: f64, allowed: f64) -> f64 {
     if length > 0.0 { length / allowed } else { 0.0 }
 }
 
-/// Length of a range [m], none without particles.
+/// Square of the length of a range [m²], zero without particles.
 #[inline(always)]
-fn length<D: Dimension>(range: &Range<D>) -> f64 {
-    D::vector(|a| (-range.1[a] - range.0[a]).max(0.0)).length()
+fn length_squared<D: Dimension>(range: &Range<D>) -> f64 {
+    let extent = D::vector(|a| (-range.1[a] - range.0[a]).max(0.0));
+    extent.dot(extent)
 }

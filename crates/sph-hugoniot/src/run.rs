@@ -228,9 +228,9 @@ fn print_summary(curves: &Curves<'_>, outcomes: &[&PointOutcome], folder: &Path,
     let core_seconds: f64 = outcomes.iter().map(|o| o.wall_seconds).sum();
     let rate = steps as f64 / core_seconds / 1e6;
     println!(
-        "{seconds:.1} s; {rate:.2} million particle-steps/s in a point, lists rebuilt once in {:.1} steps; \
+        "{seconds:.1} s; {rate:.2} million particle-steps/s in a point; lists rebuilt {} times; \
          results in {}, open report.html there",
-        summary::steps_a_rebuild(outcomes),
+        stages.rebuilds,
         folder.display()
     );
     for line in monitors::interventions(outcomes) {

@@ -325,12 +325,12 @@ fn time_section(outcomes: &[&PointOutcome], facts: &RunFacts) -> Section {
     let steps: u64 = outcomes.iter().map(|o| o.particle_steps).sum();
     let core_time: f64 = outcomes.iter().map(|o| o.wall_seconds).sum();
     let text = format!(
-        "{} on {} cores; {:.3e} particle-steps, {:.2} million a second in a point; lists rebuilt once in {:.1} steps.",
+        "{} on {} cores; {:.3e} particle-steps, {:.2} million a second in a point; lists rebuilt {} times.",
         duration(facts.seconds),
         facts.threads,
         steps as f64,
         steps as f64 / core_time / 1e6,
-        summary::steps_a_rebuild(outcomes)
+        stages.rebuilds
     );
     Section::new("How long it took").with_text(text).with_table(&summary::stages(&stages))
 }

@@ -69,13 +69,6 @@ pub fn stages(stages: &StageTimes) -> Table {
         ))
 }
 
-/// Steps from one rebuild of the neighbor lists to the next, the mean of all points.
-pub fn steps_a_rebuild(outcomes: &[&PointOutcome]) -> f64 {
-    let steps: u64 = outcomes.iter().map(|o| o.steps).sum();
-    let rebuilds: u64 = outcomes.iter().map(|o| o.stages.rebuilds).sum();
-    steps as f64 / rebuilds.max(1) as f64
-}
-
 /// The end of a run for programs: how it ended, the points, the time of the stages.
 pub fn json(end: &RunEnd, outcomes: &[&PointOutcome], folder: &Path, seconds: f64) -> serde_json::Value {
     let finite = |value: f64| value.is_finite().then_some(value);

@@ -16,7 +16,7 @@
 //! | [`scheme`] | what can be chosen: scheme, limiter, kernel, θ, Courant number, surfaces, volume consistency |
 //! | [`pass`] | pair loops in lanes: gradients and half step, contacts, time-centering |
 //! | [`matter`] | materials in lanes |
-//! | [`prepare`], [`update`] | equations of state before the pair loops, the state at the end of the step after them |
+//! | [`prepare`], [`update`] | equations of state and records before the pair loops; the state at the end of the step and, in one go, the records of the next |
 //! | [`surface`], [`volume`] | printed rules at free surfaces; density kept at that of the packing |
 //! | [`time_step`], [`stage_times`], [`interventions`], [`restart`], [`error`] | what their names say |
 //!

@@ -41,6 +41,8 @@ pub struct Simulation<D: SolidDimension> {
     pub(crate) lists_valid: bool,
     /// How much of what the lists allow particles have moved against each other.
     pub(crate) motion_share: f64,
+    /// True if the last update has left the records behind that the next step begins with.
+    pub(crate) is_prepared: bool,
     pub(crate) scratch: Scratch,
     pub(crate) stage_times: StageTimes,
     pub(crate) instructions: InstructionSet,
@@ -99,6 +101,7 @@ impl<D: SolidDimension> Simulation<D> {
             lists: NeighborLists::default(),
             lists_valid: false,
             motion_share: 0.0,
+            is_prepared: false,
             scratch: Scratch::default(),
             stage_times: StageTimes::default(),
             instructions: InstructionSet::detect(),
@@ -190,17 +193,19 @@ impl<D: SolidDimension> Simulation<D> {
 
     /// The particles, to insert, remove and change: lists are rebuilt before the next step.
     pub fn particles_mut(&mut self) -> &mut Particles<D> {
-        self.lists_valid = false;
+        (self.lists_valid, self.is_prepared) = (false, false);
         &mut self.particles
     }
 
     /// The velocities, to change their values only: lists stay.
     pub fn velocities_mut(&mut self) -> &mut D::AxisColumns {
+        self.is_prepared = false;
         &mut self.particles.velocity
     }
 
     /// Adds one velocity [m/s] to every particle: a change of frame.
     pub fn boost(&mut self, velocity: D::Vector) {
+        self.is_prepared = false;
         for a in 0..D::COUNT {
             self.particles.velocity[a].iter_mut().for_each(|u| *u += velocity[a]);
         }

@@ -13,7 +13,7 @@ use crate::record::{Prepared, Row};
 use crate::scheme::{FaceClosure, SurfaceTreatment};
 use crate::simulation::{Simulation, StepReport};
 use crate::stage_times::StepStage;
-use crate::time_step::{TimeStepReason, courant_step, signal_speed};
+use crate::time_step::{LeastStep, TimeStepReason, courant_step, signal_speed};
 use crate::update::{Outcome, StepEnd, TileReport, first_broken, update};
 use crate::{prepare, surface, volume};
 
@@ -37,7 +37,8 @@ pub(crate) struct Scratch {
     /// Face records, twice, where faces are closed.
     faces: [Vec<Line>; 2],
     reports: Vec<TileReport>,
-    steps: Vec<(f64, u32)>,
+    /// Least step that each tile allows.
+    pub(crate) least: Vec<LeastStep>,
 }
 
 impl Scratch {
@@ -98,7 +99,8 @@ impl<D: SolidDimension> Simulation<D> {
             s.size.extend(self.lists.halo().owner.iter().map(|&o| size[o as usize]));
         }
         s.reports.resize(tiles, TileReport::default());
-        s.steps.resize(tiles, (0.0, 0));
+        s.least.resize(tiles, (0.0, 0));
+        self.is_prepared = false;
     }
 
     /// Whether the lists still hold, and volume sums anew where particles have moved by a further share of the skin against
@@ -121,17 +123,29 @@ impl<D: SolidDimension> Simulation<D> {
         }
     }
 
-    /// Equations of state, and the records that the first pair loop reads.
+    /// Equations of state, and the records that the first pair loop reads, unless the last update has left them behind; and
+    /// the images of the records.
     pub(crate) fn prepare(&mut self) {
         let (s, prepared) = (&mut self.scratch, self.settings.scheme.prepared());
         let records = if prepared == Prepared::State { &mut s.state } else { &mut s.sides };
-        prepare::prepare(&self.particles, &self.matter, self.instructions, prepared, records, &mut s.rows);
+        if !self.is_prepared {
+            let (rows, least) = (&mut s.rows, &mut s.least);
+            prepare::prepare(
+                &self.particles,
+                &self.matter,
+                self.instructions,
+                prepared,
+                records,
+                rows,
+                least,
+            );
+        }
         self.lists.halo().refresh(records, prepared.lines::<D>(), self.lists.n_padded());
     }
 
     pub(crate) fn choose_time_step(&mut self, limit: f64) -> Result<(f64, TimeStepReason), StepError> {
-        let s = &mut self.scratch;
-        let (step, reason) = courant_step(&self.particles, &s.rows, self.settings.courant, &mut s.steps);
+        let s = &self.scratch;
+        let (step, reason) = courant_step(&self.particles, &s.rows, self.settings.courant, &s.least);
         let (step, reason) = if step > limit { (limit, TimeStepReason::Limit) } else { (step, reason) };
         if !(step > 0.0 && step.is_finite()) || self.time + step == self.time {
             let TimeStepReason::Courant { particle, .. } = reason else { return Ok((step, reason)) };
@@ -217,9 +231,11 @@ impl<D: SolidDimension> Simulation<D> {
         let s = &mut self.scratch;
         let of_sums = ..self.lists.n_padded() * D::SUM_LINES;
         let (lists, pairs) = (&self.lists, s.pairs.as_slice());
-        let outcome = Outcome { rows: &s.rows, sides: &s.sides, sums: &mut s.state[of_sums], lists, pairs };
+        let (rows, sides, sums) = (&mut s.rows, &mut s.sides, &mut s.state[of_sums]);
+        let outcome = Outcome { rows, sides, sums, lists, pairs, least: &mut s.least };
         let how = (time_step, self.instructions);
         update(&mut self.particles, &self.matter, &self.settings, outcome, how, &mut s.reports);
+        self.is_prepared = true;
         let mut sum = TileReport::default();
         for report in &s.reports {
             (0..3).for_each(|a| sum.input.impulse[a] += report.input.impulse[a]);

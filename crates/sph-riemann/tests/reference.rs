@@ -45,7 +45,9 @@ impl<D: SolidDimension> Passes<D> {
         let size = vec![common::SIZE; records];
         let matter = Matter::new(simulation.materials().to_vec());
         let instructions = InstructionSet::detect();
-        prepare(simulation.particles(), &matter, instructions, Prepared::State, &mut state, &mut rows);
+        let mut least = vec![(0.0, 0); lists.tiles().len()];
+        let prepared = Prepared::State;
+        prepare(simulation.particles(), &matter, instructions, prepared, &mut state, &mut rows, &mut least);
         lists.halo().refresh(&mut state, D::STATE_LINES, padded);
         let smoothing = Smoothing::new(settings.kernel, settings.smoothing, D::COUNT, Sizes::Each(&size));
         let pass = Pass { lists, smoothing, surface, records: &state, half_step: 0.0, instructions };

@@ -10,6 +10,9 @@
 //!
 //! Eight particles at a time: the module `block`; the module `plain` has the same for one particle, for tests.
 //!
+//! While a particle's new state is at hand, its equation of state is evaluated once, for failure and for the next step: the
+//! update leaves behind the records, rows and least steps that [`crate::prepare`] would fill.
+//!
 //! Where the velocity is imposed, e takes what is left after the *unconstrained* change of ½U², and the velocity stays;
 //! momentum and energy that the constraint puts in are reported. Frozen particles only translate.
 
@@ -20,7 +23,7 @@ mod plain;
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::lanes::{InstructionSet, Line};
-use sph_core::neighbors::{NeighborLists, TILE};
+use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 use sph_core::particles::{Constraint, Particles};
 use sph_core::tiles::TiledColumn;
 
@@ -29,8 +32,9 @@ use crate::error::{Stage, StepError};
 use crate::interventions::Interventions;
 use crate::matter::Matter;
 use crate::pass::{TilePairs, collect};
+use crate::record::{Prepared, Row};
 use crate::scheme::{Settings, SurfaceTreatment};
-use crate::time_step::TimeStepReason;
+use crate::time_step::{LeastStep, TimeStepReason};
 pub use block::UpdateTile;
 
 /// Largest relative change of density that volume consistency makes in a step [-].
@@ -71,16 +75,19 @@ pub struct StepEnd {
 
 /// What the passes found.
 pub struct Outcome<'a, D: SolidDimension> {
-    /// Rows of blocks.
-    pub rows: &'a [Line],
-    /// Records of the contact pass.
-    pub sides: &'a [Line],
-    /// What pairs added up to, without what tiles have for each other.
+    /// Rows of blocks; those of the next step afterwards.
+    pub rows: &'a mut [Line],
+    /// Records of the contact pass; those of the next step afterwards, in a scheme without reconstruction.
+    pub sides: &'a mut [Line],
+    /// What pairs added up to, without what tiles have for each other; records of the next step afterwards, in a scheme with
+    /// reconstruction.
     pub sums: &'a mut [Line],
     /// The lists.
     pub lists: &'a NeighborLists<D>,
     /// What tiles have for each other.
     pub pairs: &'a [TilePairs],
+    /// Least steps of the tiles, afterwards.
+    pub least: &'a mut [LeastStep],
 }
 
 /// Columns of particles that a step changes.
@@ -96,11 +103,23 @@ struct Columns<'a, D: Dimension> {
     distension: TiledColumn<'a, f64>,
 }
 
+/// What the update of a tile writes besides the columns.
+pub(crate) struct Written<'a> {
+    report: &'a mut TileReport,
+    least: &'a mut LeastStep,
+    /// Rows of its blocks, to be read before.
+    rows: &'a mut [Line],
+    /// What the pairs of its particles added up to, to be read before.
+    sums: &'a mut [Line],
+    /// Records of the next step; `None`: they take the place of the sums.
+    records: Option<&'a mut [Line]>,
+}
+
 /// What the update reads besides the state of particles.
 struct Context<'a> {
     matter: &'a Matter,
     settings: &'a Settings,
-    rows: &'a [Line],
+    /// Records of the contact pass, in a scheme with reconstruction.
     sides: &'a [Line],
     time_step: f64,
     instructions: InstructionSet,
@@ -150,8 +169,13 @@ fn for_each_tile<D: SolidDimension>(
         SurfaceTreatment::SpectralCap { cap } if settings.scheme.reconstructs() => 1.0 / cap,
         _ => 0.0,
     };
-    let Outcome { rows, sides, sums, lists, pairs } = outcome;
-    let context = Context { matter, settings, rows, sides, time_step, instructions, least_eigenvalue };
+    let Outcome { rows, sides, sums, lists, pairs, least } = outcome;
+    let own = lists.n_padded() * D::CONSTANT_SIDES_LINES;
+    let (sides, records) = match settings.scheme.prepared() {
+        Prepared::State => (&*sides, None),
+        Prepared::ConstantSides => (&[][..], Some(&mut sides[..own])),
+    };
+    let context = Context { matter, settings, sides, time_step, instructions, least_eigenvalue };
     let fixed = Fixed {
         material: &particles.material,
         constraint: &particles.constraint,
@@ -159,14 +183,26 @@ fn for_each_tile<D: SolidDimension>(
         size: &particles.size,
         packing_excess: &particles.packing_excess,
     };
-    let sums_of = sums.par_chunks_mut(TILE * D::SUM_LINES);
-    reports.par_iter_mut().zip(sums_of).enumerate().for_each(|(t, (report, sums))| {
-        collect(lists, pairs, t, sums);
-        // SAFETY: the parallel iterator visits every tile once, and these are the only parts taken.
+    let run = |t: usize, tile: Written<'_>| {
+        collect(lists, pairs, t, tile.sums);
+        // SAFETY: the parallel iterators visit every tile once, and these are the only parts taken.
         let columns = unsafe { TileColumns::<D>::take(&columns, t) };
-        *report = TileReport::default();
-        work(UpdateTile { columns, first: t * TILE, sums, fixed: &fixed, context: &context, report });
-    });
+        *tile.report = TileReport::default();
+        work(UpdateTile { columns, first: t * TILE, fixed: &fixed, context: &context, written: tile });
+    };
+    let reports = reports.par_iter_mut().zip(least);
+    let rows = rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>());
+    let tiles = reports.zip(rows).zip(sums.par_chunks_mut(TILE * D::SUM_LINES)).enumerate();
+    if let Some(records) = records {
+        let records = records.par_chunks_mut(TILE * D::CONSTANT_SIDES_LINES);
+        tiles.zip(records).for_each(|((t, (((report, least), rows), sums)), records)| {
+            run(t, Written { report, least, rows, sums, records: Some(records) });
+        });
+    } else {
+        tiles.for_each(|(t, (((report, least), rows), sums))| {
+            run(t, Written { report, least, rows, sums, records: None });
+        });
+    }
 }
 
 /// Columns that a step leaves as they are.

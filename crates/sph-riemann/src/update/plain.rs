@@ -7,7 +7,7 @@ use sph_materials::{Damage, Material};
 
 use super::{Context, Fixed, LARGEST_RELAXATION, Outcome, TileColumns, TileReport, UpdateTile};
 use crate::dimension::{SolidDimension, symmetric};
-use crate::record::{Row, Sides, Sums};
+use crate::record::{Prepared, Row, Sides, Sums};
 use crate::scheme::{Settings, SurfaceTreatment, VolumeConsistency};
 
 /// What the passes found for one particle.
@@ -20,15 +20,10 @@ struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    fn of<D: SolidDimension>(context: &Context<'a>, i: usize, sums: &'a [Line]) -> Self {
-        let reconstructs = context.settings.scheme.reconstructs();
-        let lines = if reconstructs { D::SIDES_LINES } else { D::CONSTANT_SIDES_LINES };
-        Self {
-            rows: &context.rows[i / LANES * Row::count::<D>()..][..Row::count::<D>()],
-            sides: &context.sides[i * lines..][..lines],
-            sums,
-            lane: i % LANES,
-        }
+    fn of<D: SolidDimension>(context: &Context<'a>, i: usize, rows: &'a [Line], sums: &'a [Line]) -> Self {
+        // There are none without reconstruction.
+        let first = (i * D::SIDES_LINES).min(context.sides.len());
+        Self { rows, sides: &context.sides[first..], sums, lane: i % LANES }
     }
     fn row(&self, r: usize) -> f64 {
         self.rows[r].0[self.lane]
@@ -43,10 +38,11 @@ impl<'a> Found<'a> {
 
 /// Updates all particles of a tile.
 fn update_tile<D: SolidDimension>(tile: UpdateTile<'_, D>) {
-    let UpdateTile { mut columns, first, sums, fixed, context, report } = tile;
+    let UpdateTile { mut columns, first, fixed, context, written } = tile;
     for k in 0..columns.density.len() {
-        let found = Found::of::<D>(context, first + k, &sums[k * D::SUM_LINES..]);
-        columns.particle(k, first + k, fixed, context, found, report);
+        let rows = &written.rows[k / LANES * Row::count::<D>()..][..Row::count::<D>()];
+        let found = Found::of::<D>(context, first + k, rows, &written.sums[k * D::SUM_LINES..]);
+        columns.particle(k, first + k, fixed, context, found, written.report);
     }
 }
 
@@ -88,7 +84,7 @@ impl<D: SolidDimension> TileColumns<'_, D> {
             report.input.work -= fixed.mass[i] * kinetic;
         }
         let material = &context.matter.materials()[fixed.material[i] as usize];
-        let gradient = velocity_gradient::<D>(found, context.settings);
+        let gradient = velocity_gradient::<D>(found, fixed.mass[i], context.settings);
         let divergence: f64 = (0..D::COUNT).map(|a| gradient[a][a]).sum();
         let relaxation = match context.settings.volume_consistency {
             Some(v) => relaxation_rate(&v, context, fixed, i, found),
@@ -210,8 +206,8 @@ fn turn<D: Dimension>(s: &mut [[f64; 3]; 3], gradient: &[[f64; 3]; 3], tau: f64)
 }
 
 /// ∂U_b/∂x_a at [a][b], from the raw sum R of the contact pass.
-fn velocity_gradient<D: SolidDimension>(found: Found<'_>, settings: &Settings) -> [[f64; 3]; 3] {
-    let inverse_volume = 1.0 / found.side(Sides::volume::<D>()).abs();
+fn velocity_gradient<D: SolidDimension>(found: Found<'_>, mass: f64, settings: &Settings) -> [[f64; 3]; 3] {
+    let inverse_volume = 1.0 / (mass * found.row(Row::INVERSE_DENSITY));
     let raw = |a: usize, b: usize| found.sum(Sums::gradient::<D>() + a * D::COUNT + b) * inverse_volume;
     let k = |a: usize, b: usize| found.side(Sides::correction::<D>() + symmetric(D::COUNT, a, b));
     let l = |a: usize, b: usize| found.row(Row::gradient_matrix::<D>() + symmetric(D::COUNT, a, b));
@@ -353,15 +349,23 @@ mod tests {
             let mut plain = simulation.particles.clone();
             let mut reports = vec![TileReport::default(); plain.len().div_ceil(256)];
             let scratch = &simulation.scratch;
-            let (rows, sides, mut sums) = (&scratch.rows, &scratch.sides, scratch.state.clone());
+            let (mut rows, mut sides) = (scratch.rows.clone(), scratch.sides.clone());
+            let (mut sums, mut least) = (scratch.state.clone(), scratch.least.clone());
             sums.truncate(simulation.lists.n_padded() * D::SUM_LINES);
-            let (lists, pairs) = (&simulation.lists, &scratch.pairs);
-            let outcome = Outcome { rows, sides, sums: &mut sums, lists, pairs };
+            let outcome = Outcome {
+                rows: &mut rows,
+                sides: &mut sides,
+                sums: &mut sums,
+                lists: &simulation.lists,
+                pairs: &scratch.pairs,
+                least: &mut least,
+            };
             let matter = Matter::new(simulation.materials().to_vec());
             let how = (time_step, InstructionSet::Plain);
             for_each_tile::<D>(&mut plain, &matter, &settings, outcome, how, &mut reports, update_tile);
             let lanes = simulation.update(time_step);
             same(&simulation.particles, &plain, step);
+            leaves_what_preparation_fills(&mut simulation);
             let mut sum = TileReport::default();
             for report in &reports {
                 assert_eq!(report.broken, None);
@@ -379,6 +383,28 @@ mod tests {
             yielded = yielded.max(plain.plastic_strain.iter().filter(|&&s| s > 0.0).count());
         }
         assert!(failed > 5 && yielded > 5, "{failed} have failed, {yielded} have yielded");
+    }
+
+    /// The update leaves the bits behind that the preparation of the next step would fill in.
+    fn leaves_what_preparation_fills<D: SolidDimension>(simulation: &mut Simulation<D>) {
+        let bits = |simulation: &Simulation<D>| {
+            let prepared = simulation.settings.scheme.prepared();
+            let scratch = &simulation.scratch;
+            let records = if prepared == Prepared::State { &scratch.state } else { &scratch.sides };
+            let records = &records[..simulation.lists.n_padded() * prepared.lines::<D>()];
+            let of_lines = |lines: &[Line]| lines.iter().flat_map(|l| l.0.map(f64::to_bits)).collect();
+            let least: Vec<_> = scratch.least.iter().map(|least| (least.0.to_bits(), least.1)).collect();
+            let before = simulation.particles.len().div_ceil(LANES) * Row::count::<D>();
+            let (rows, count) = (&scratch.rows[..before], Row::count::<D>());
+            let rows: Vec<Vec<u64>> = rows.chunks(count).map(|r| of_lines(&r[..Row::COUNT_BEFORE])).collect();
+            let records: Vec<u64> = of_lines(records);
+            (records, rows, least)
+        };
+        assert!(simulation.is_prepared);
+        let left = bits(simulation);
+        simulation.is_prepared = false;
+        simulation.prepare();
+        assert!(left == bits(simulation));
     }
 
     /// Columns agree to rounding, as seen from the largest value of each.

@@ -35,6 +35,10 @@ impl<D: Dimension> Domain<D> {
             return x;
         }
         let (lower, period) = (self.lower[axis], self.period(axis));
+        let from_lower = x - lower;
+        if from_lower >= 0.0 && from_lower < period && x < self.upper[axis] {
+            return x; // Most are inside: no division, no rounding.
+        }
         let moved = x - period * ((x - lower) / period).floor();
         // Rounding can put a number just below the lower bound on the upper one.
         if moved >= self.upper[axis] { lower } else { moved }

@@ -61,8 +61,8 @@ impl<D: SolidDimension> Simulation<D> {
         let reach = self.reach();
         let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
         sort_particles(&mut self.particles, &self.domain, 2.0 * reach.factor * largest + reach.skin);
-        let positions = self.particles.position.clone();
-        self.find_neighbors(&positions);
+        self.lists.rebuild(&self.particles.position, &self.particles.size, &self.domain, reach);
+        self.fit_scratch();
         self.stage_times.rebuilds += 1;
     }
 
@@ -74,9 +74,14 @@ impl<D: SolidDimension> Simulation<D> {
         }
     }
 
-    /// Lists for the particles at the given positions, and scratch of their size.
+    /// Lists as they were built for the particles at the given positions.
     pub(crate) fn find_neighbors(&mut self, positions: &D::AxisColumns) {
         self.lists = NeighborLists::build(positions, &self.particles.size, &self.domain, self.reach());
+        self.fit_scratch();
+    }
+
+    /// Scratch of the size of the lists.
+    fn fit_scratch(&mut self) {
         (self.lists_valid, self.motion_share) = (true, 0.0);
         let (records, padded) = (self.lists.n_records(), self.lists.n_padded());
         let tiles = self.lists.tiles().len();

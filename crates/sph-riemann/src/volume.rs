@@ -25,17 +25,23 @@
 //! Source: this project; see the guide on what the published curve misses. Valid for regular packings of one particle
 //! size per neighborhood.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
 use sph_core::domain::Domain;
 use sph_core::geometry::{Lattice, lattice_volume_sum};
 use sph_core::kernel::KernelFamily;
 use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, dispatch_with};
-use sph_core::neighbors::cell_grid::CellSortedPoints;
+use sph_core::neighbors::cell_grid::{CellSortedPoints, Vicinity};
 use sph_core::neighbors::{Halo, TILE};
 use sph_core::particles::{Constraint, Particles};
 
 use crate::scheme::{PackingReference, VolumeConsistency};
+
+/// The kernel of the sum.
+const KERNEL: KernelFamily = KernelFamily::WendlandC2;
 
 /// Fills the column `packing_excess` with ΔS, zero near imposed particles.
 pub fn measure<D: Dimension>(
@@ -48,113 +54,160 @@ pub fn measure<D: Dimension>(
     if particles.is_empty() || largest == 0.0 {
         return;
     }
-    let kernel = KernelFamily::WendlandC2;
-    let reach = kernel.support() * settings.width * largest;
-    // Particles may have left the box since their lists were built.
-    let inside = |a: usize| particles.position[a].iter().map(|&x| domain.wrap(a, x)).collect();
-    let own: D::AxisColumns = Components::from_fn(inside);
-    let halo = Halo::<D>::build(&own, domain, reach);
-    let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(&own, a));
-    let points = CellSortedPoints::<D>::new(&all, 0.5 * reach);
-    let n = particles.len();
-    let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
-    let padded = |value: &dyn Fn(usize) -> f64, filling: f64| -> Vec<f64> {
-        points.index.iter().map(|&i| value(owner(i))).chain([filling; LANES]).collect()
-    };
-    let volume = padded(&|i| particles.mass[i] / particles.density[i], 0.0);
-    let imposed = padded(&|i| (particles.constraint[i] != Constraint::Free) as u8 as f64, 0.0);
-    let position: D::AxisColumns =
-        Components::from_fn(|a| points.position[a].iter().copied().chain([FAR; LANES]).collect());
+    let sums =
+        sums(particles, domain, settings.width, KERNEL.support() * settings.width * largest, instructions);
     let perfect = if D::COUNT == 2 { Lattice::Square } else { Lattice::Cubic };
-    let lattice = lattice_volume_sum(perfect, settings.width, kernel);
-    let sum = &VolumeSum { points: &points, position: &position, volume: &volume, imposed: &imposed, kernel };
-    let (own, size) = (&own, &particles.size);
-    let (width, from_start) = (settings.width, settings.reference == PackingReference::Start);
-    let columns = particles.packing_excess.par_chunks_mut(TILE);
-    columns.zip(particles.packing_reference.par_chunks_mut(TILE)).enumerate().for_each(
-        |(t, (excess, reference))| {
-            let first = t * TILE;
-            let tile =
-                VolumeSumTile::<D> { sum, own, size, first, width, lattice, from_start, excess, reference };
-            dispatch_with(instructions, tile);
+    let lattice = lattice_volume_sum(perfect, settings.width, KERNEL);
+    let from_start = settings.reference == PackingReference::Start;
+    let normalization = KERNEL.normalization(D::COUNT);
+    let columns = particles.packing_excess.par_iter_mut().zip(&mut particles.packing_reference);
+    columns.zip(&sums).zip(&particles.size).with_min_len(TILE).for_each(
+        |(((excess, reference), sum), size)| {
+            let total = f64::from_bits(sum.load(Ordering::Relaxed));
+            let near_imposed = total.is_sign_negative();
+            let sum = normalization / (settings.width * size).powi(D::COUNT as i32) * total;
+            if from_start && !near_imposed && *reference == 0.0 {
+                *reference = sum;
+            }
+            let held_against = if from_start { *reference } else { lattice };
+            *excess = if near_imposed { 0.0 } else { sum - held_against };
         },
     );
 }
 
-/// Where the filling of whole lanes stands [m]: beyond every support, and finite when squared.
-const FAR: f64 = 1e100;
+/// Σ V_j w(r/h) of every particle without normalization, as bits; with a minus sign where an imposed particle is within
+/// the support. (They are found in the order of the cells, which threads share: atomic numbers take them in any order.)
+fn sums<D: Dimension>(
+    particles: &Particles<D>,
+    domain: &Domain<D>,
+    width: f64,
+    reach: f64,
+    instructions: InstructionSet,
+) -> Vec<AtomicU64> {
+    // Particles may have left the box since their lists were built.
+    let inside = |a: usize| particles.position[a].par_iter().map(|&x| domain.wrap(a, x)).collect();
+    let own: D::AxisColumns = Components::from_fn(inside);
+    let halo = Halo::<D>::build(&own, domain, reach);
+    let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(&own, a));
+    let points = &CellSortedPoints::<D>::new(&all, 0.5 * reach);
+    let n = particles.len();
+    let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
+    let volume = points.column(|i| particles.mass[owner(i)] / particles.density[owner(i)], 0.0);
+    let imposed = points.column(|i| particles.constraint[owner(i)] != Constraint::Free, false);
+    let smoothing = points.column(|i| width * particles.size[owner(i)], 1.0);
+    let sums: Vec<AtomicU64> = (0..n).map(|_| AtomicU64::new(0)).collect();
+    let sum = &VolumeSum { points, volume: &volume, imposed: &imposed, smoothing: &smoothing, sums: &sums };
+    (0..points.index.len().div_ceil(PART)).into_par_iter().for_each_init(
+        Vicinity::default,
+        |vicinity, part| {
+            let part = part * PART..((part + 1) * PART).min(points.index.len());
+            dispatch_with(instructions, VolumeSumPart { sum, part, vicinity });
+        },
+    );
+    sums
+}
+
+/// Sorted points that one thread sums over in one go.
+const PART: usize = 1024;
+/// Points that sums are taken of together, at most.
+const GROUP: usize = 8;
 
 struct VolumeSum<'a, D: Dimension> {
     points: &'a CellSortedPoints<D>,
-    position: &'a D::AxisColumns,
+    /// Columns of the sorted points.
     volume: &'a [f64],
-    imposed: &'a [f64],
-    kernel: KernelFamily,
+    imposed: &'a [bool],
+    smoothing: &'a [f64],
+    /// By particle.
+    sums: &'a [AtomicU64],
 }
 
-struct VolumeSumTile<'a, D: Dimension> {
+struct VolumeSumPart<'a, D: Dimension> {
     sum: &'a VolumeSum<'a, D>,
-    own: &'a D::AxisColumns,
-    size: &'a [f64],
-    first: usize,
-    width: f64,
-    lattice: f64,
-    from_start: bool,
-    excess: &'a mut [f64],
-    reference: &'a mut [f64],
+    part: Range<usize>,
+    vicinity: &'a mut Vicinity,
 }
 
-impl<D: Dimension> LaneKernel for VolumeSumTile<'_, D> {
+impl<D: Dimension> LaneKernel for VolumeSumPart<'_, D> {
+    /// Points that see the same candidates follow each other: those are fetched once for all of them.
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        for (k, excess) in self.excess.iter_mut().enumerate() {
-            let i = self.first + k;
-            let h = self.width * self.size[i];
-            let point = D::vector(|a| self.own[a][i]);
-            let normalization = self.sum.kernel.normalization(D::COUNT) / h.powi(D::COUNT as i32);
-            let (total, imposed) = self.sum.around::<L>(point, h);
-            let sum = normalization * total;
-            let unseen = self.from_start && imposed == 0.0 && self.reference[k] == 0.0;
-            if unseen {
-                self.reference[k] = sum;
+        let Self { sum, part, vicinity } = self;
+        let mut first = part.start;
+        while first < part.end {
+            if sum.is_copy(first) {
+                first += 1;
+                continue;
             }
-            let reference = if self.from_start { self.reference[k] } else { self.lattice };
-            *excess = if imposed > 0.0 { 0.0 } else { sum - reference };
+            sum.points.look_around(sum.point(first), sum.reach(first), vicinity);
+            let mut end = first + 1;
+            while end < part.end.min(first + GROUP)
+                && !sum.is_copy(end)
+                && sum.points.is_known(sum.point(end), sum.reach(end), vicinity)
+            {
+                end += 1;
+            }
+            sum.group::<L>(first..end, vicinity);
+            first = end;
         }
     }
 }
 
 impl<D: Dimension> VolumeSum<'_, D> {
-    /// Σ V_j w(r/h) without normalization, and whether an imposed particle is within the support.
     #[inline(always)]
-    fn around<L: Lanes>(&self, point: D::Vector, h: f64) -> (f64, f64) {
-        let reach = self.kernel.support() * h;
-        let inverse_h = L::splat(1.0 / h);
-        let support = L::splat(self.kernel.support());
-        // A little more than the support, so that rounding leaves nobody out.
-        let reach_squared = L::splat(reach * reach * (1.0 + 1e-12));
+    fn point(&self, p: usize) -> D::Vector {
+        D::vector(|a| self.points.position[a][p])
+    }
+
+    #[inline(always)]
+    fn reach(&self, p: usize) -> f64 {
+        KERNEL.support() * self.smoothing[p]
+    }
+
+    #[inline(always)]
+    fn is_copy(&self, p: usize) -> bool {
+        self.points.index[p] as usize >= self.sums.len()
+    }
+
+    /// The sums of some points that see the same candidates.
+    #[inline(always)]
+    fn group<L: Lanes>(&self, group: Range<usize>, vicinity: &Vicinity) {
         let lane = L::load(&std::array::from_fn(|l| l as f64));
-        let (mut total, mut imposed) = (L::zero(), L::zero());
-        self.points.runs_near(point, reach, |first, end| {
-            for p in (first..end).step_by(LANES) {
-                let load =
-                    |column: &[f64]| L::load(column[p..p + LANES].try_into().expect("padded to whole lanes"));
+        let (mut totals, mut near_imposed) = ([L::zero(); GROUP], [false; GROUP]);
+        let mut inverse = [0.0; GROUP];
+        group.clone().zip(&mut inverse).for_each(|(p, inverse)| *inverse = 1.0 / self.smoothing[p]);
+        for &(first, count) in &vicinity.eights {
+            let eight = first as usize..first as usize + LANES;
+            let load = |column: &[f64]| {
+                L::load(column[eight.clone()].try_into().expect("columns are filled up to whole lanes"))
+            };
+            let volume = lane.select_less(L::splat(count as f64), load(self.volume), L::zero());
+            let at: D::Axes<L> = Components::from_fn(|a| load(&self.points.position[a]));
+            let imposed = self.imposed[eight.clone()].contains(&true);
+            for (k, p) in group.clone().enumerate() {
                 let mut r2 = L::zero();
                 for a in 0..D::COUNT {
-                    let d = load(&self.position[a]) - L::splat(point[a]);
+                    let d = at[a] - L::splat(self.points.position[a][p]);
                     r2 = d.mul_add(d, r2);
                 }
-                if r2.less_mask(reach_squared) == 0 {
-                    continue; // All are beyond the support: zeros would be added.
+                let q = r2.sqrt() * L::splat(inverse[k]);
+                totals[k] = volume.mul_add(KERNEL.value(q), totals[k]);
+                if imposed {
+                    near_imposed[k] |= self.sees_imposed(q, eight.start);
                 }
-                let q = r2.sqrt() * inverse_h;
-                let inside = lane.select_less(L::splat((end - p) as f64), load(self.volume), L::zero());
-                total = inside.mul_add(self.kernel.value(q), total);
-                let seen = q.select_less(support, load(self.imposed), L::zero());
-                imposed = imposed.max(seen);
             }
-        });
-        let total: f64 = total.to_array().iter().sum();
-        (total, imposed.to_array().iter().fold(0.0, |a, &b| a.max(b)))
+        }
+        for (k, p) in group.enumerate() {
+            let total: f64 = totals[k].to_array().iter().sum();
+            let total = if near_imposed[k] { -total } else { total };
+            self.sums[self.points.index[p] as usize].store(total.to_bits(), Ordering::Relaxed);
+        }
+    }
+
+    /// Whether an imposed one is among eight points at distances `q` (in smoothing lengths) and within the support.
+    #[inline(always)]
+    fn sees_imposed<L: Lanes>(&self, q: L, first: usize) -> bool {
+        let within = q.less_mask(L::splat(KERNEL.support()));
+        (0..LANES).any(|l| within >> l & 1 == 1 && self.imposed[first + l])
     }
 }

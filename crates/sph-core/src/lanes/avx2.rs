@@ -6,7 +6,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use super::{LANES, Lanes, Line, Real};
+use super::{LANES, Lanes, Line, PLACES, Real};
 
 /// Eight numbers in two registers.
 #[derive(Clone, Copy, Debug)]
@@ -164,6 +164,17 @@ impl Lanes for Avx2 {
             let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1));
             (low | high << 4) as u8
         }
+    }
+    #[inline(always)]
+    fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES] {
+        let mut packed = [0; LANES];
+        // SAFETY: the invariant of this module; all arrays have eight numbers.
+        unsafe {
+            let numbers = _mm256_loadu_si256(numbers.as_ptr().cast());
+            let places = _mm256_cvtepu8_epi32(_mm_loadl_epi64(PLACES[mask as usize].as_ptr().cast()));
+            _mm256_storeu_si256(packed.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(numbers, places));
+        }
+        packed
     }
 }
 

@@ -138,6 +138,16 @@ impl Lanes for Avx512 {
         // SAFETY: the invariant of this module.
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }
     }
+    #[inline(always)]
+    fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES] {
+        let mut packed = [0; LANES];
+        // SAFETY: the invariant of this module; both arrays have eight numbers.
+        unsafe {
+            let numbers = _mm256_loadu_si256(numbers.as_ptr().cast());
+            _mm256_storeu_si256(packed.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, numbers));
+        }
+        packed
+    }
 }
 
 #[inline(always)]

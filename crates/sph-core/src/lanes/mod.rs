@@ -107,6 +107,8 @@ pub trait Lanes: Real {
     fn transpose(block: [Self; LANES]) -> [Self; LANES];
     /// Bit `l` is set where `self < limit` in lane `l`.
     fn less_mask(self, limit: Self) -> u8;
+    /// The numbers whose bits are set in `mask`, in their order, at the front; those behind mean nothing.
+    fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES];
     /// The sums of both in all lanes but the last, which holds the larger of both (`other` if either is NaN).
     fn sums_and_maximum(self, other: Self) -> Self;
     /// Adds to line `line` of eight records of `stride` lines each, one after the other: lane `l` of element `k` goes to
@@ -171,6 +173,24 @@ pub trait Lanes: Real {
         array
     }
 }
+
+/// For each mask: the places of its set bits, in order.
+static PLACES: [[u8; LANES]; 256] = {
+    let mut places = [[0; LANES]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < LANES {
+            if mask >> lane & 1 == 1 {
+                places[mask][count] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    places
+};
 
 impl Real for f64 {
     #[inline(always)]
@@ -242,18 +262,28 @@ impl InstructionSet {
         let mut list = vec![Self::Plain];
         #[cfg(target_arch = "x86_64")]
         {
-            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            if has_avx2() {
                 list.push(Self::Avx2);
             }
-            if is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512vl")
-            {
+            if has_avx512() {
                 list.push(Self::Avx512);
             }
         }
         list
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") && is_x86_feature_detected!("popcnt")
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_avx512() -> bool {
+    is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
+        && has_avx2()
 }
 
 /// Runs a computation with the widest lanes of this machine.
@@ -271,13 +301,13 @@ pub fn dispatch_with<K: LaneKernel>(set: InstructionSet, kernel: K) {
     match set {
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx512 => {
-            assert!(is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq"));
+            assert!(has_avx512());
             // SAFETY: the machine has the instructions; the line above has just checked it.
             unsafe { run_avx512(kernel) }
         }
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 => {
-            assert!(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"));
+            assert!(has_avx2());
             // SAFETY: the machine has the instructions; the line above has just checked it.
             unsafe { run_avx2(kernel) }
         }
@@ -286,13 +316,13 @@ pub fn dispatch_with<K: LaneKernel>(set: InstructionSet, kernel: K) {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,popcnt")]
 fn run_avx512<K: LaneKernel>(kernel: K) {
     kernel.run::<Avx512>();
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,popcnt")]
 fn run_avx2<K: LaneKernel>(kernel: K) {
     kernel.run::<Avx2>();
 }
@@ -354,6 +384,29 @@ mod tests {
         assert_eq!(sums(7), 1507.0);
         for result in &results[1..] {
             assert_eq!(result, &results[0]);
+        }
+    }
+
+    /// Packs the same numbers with every mask.
+    struct Packing<'a>(&'a mut Vec<Vec<u32>>);
+
+    impl LaneKernel for Packing<'_> {
+        fn run<L: Lanes>(self) {
+            let numbers = [10, 11, 12, 13, 14, 15, 16, 17];
+            let packed = |mask: u8| L::pack(&numbers, mask)[..mask.count_ones() as usize].to_vec();
+            self.0.extend((0..=u8::MAX).map(packed));
+        }
+    }
+
+    #[test]
+    fn what_a_mask_picks_is_packed_in_order() {
+        for set in InstructionSet::available() {
+            let mut packed = Vec::new();
+            dispatch_with(set, Packing(&mut packed));
+            for (mask, packed) in packed.iter().enumerate() {
+                let expected: Vec<u32> = (0..8).filter(|l| mask >> l & 1 == 1).map(|l| 10 + l).collect();
+                assert_eq!(packed, &expected, "{set:?}, mask {mask:#b}");
+            }
         }
     }
 }

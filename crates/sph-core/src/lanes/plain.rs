@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use super::{LANES, Lanes, Line, Real};
+use super::{LANES, Lanes, Line, PLACES, Real};
 
 /// Eight numbers in an array.
 #[derive(Clone, Copy, Debug)]
@@ -114,5 +114,9 @@ impl Lanes for Plain {
     #[inline(never)]
     fn less_mask(self, limit: Self) -> u8 {
         (0..LANES).fold(0, |mask, l| mask | ((self.0[l] < limit.0[l]) as u8) << l)
+    }
+    #[inline(never)]
+    fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES] {
+        PLACES[mask as usize].map(|place| numbers[place as usize])
     }
 }

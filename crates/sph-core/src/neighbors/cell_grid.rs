@@ -4,11 +4,15 @@ use rayon::prelude::*;
 
 use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
+use crate::lanes::LANES;
 use crate::particles::Particles;
 
 /// Width, in cells, of the strips that particles are ordered along. Neighbors are then a few lines of a strip away, or
 /// in the strip beside it: near in memory also where a row of the whole box would not fit a cache.
 const STRIP: usize = 8;
+
+/// Where the filling of whole lanes stands [m]: beyond every reach, and finite when squared.
+const FAR: f64 = 1e100;
 
 /// Largest number of cells: a sparse cloud gets wider cells than it asked for.
 const MAX_CELLS: usize = 1 << 24;
@@ -129,7 +133,7 @@ pub struct CellSortedPoints<D: Dimension> {
     start: Vec<u32>,
     /// Index of each point in the order that it was given in.
     pub index: Vec<u32>,
-    /// Coordinates of each point, sorted [m].
+    /// Coordinates of each point, sorted, and of as many as eight behind them that are [`FAR`] from all [m].
     pub position: D::AxisColumns,
 }
 
@@ -141,15 +145,37 @@ impl<D: Dimension> CellSortedPoints<D> {
         let key = |i: usize| grid.number(grid.coordinates(|a| columns[a][i])) as u32;
         let keys: Vec<u32> = (0..columns[0].len()).into_par_iter().map(key).collect();
         let (index, start) = counting_sort(&keys, grid.len());
-        let sorted = Components::from_fn(|a| index.par_iter().map(|&i| columns[a][i as usize]).collect());
-        Self { grid, start, index, position: sorted }
+        let mut points = Self { grid, start, index, position: Components::from_fn(|_| Vec::new()) };
+        points.position = Components::from_fn(|a| points.column(|i| columns[a][i as usize], FAR));
+        points
+    }
+
+    /// Numbers of the points, told by their index, in the order of the cells, and of the filling behind them.
+    pub fn column<T: Copy + Send + Sync>(
+        &self,
+        value: impl Fn(u32) -> T + Sync + Send,
+        filling: T,
+    ) -> Vec<T> {
+        let mut column = Vec::with_capacity(self.index.len() + LANES);
+        self.index.par_iter().map(|&i| value(i)).collect_into_vec(&mut column);
+        column.extend([filling; LANES]);
+        column
     }
 
     /// Calls `run(first, end)` for each run of sorted points that may lie within `reach` [m] of a point.
     #[inline]
-    pub fn runs_near(&self, point: D::Vector, reach: f64, mut run: impl FnMut(usize, usize)) {
-        let low = self.grid.coordinates(|a| point[a] - reach);
-        let high = self.grid.coordinates(|a| point[a] + reach);
+    pub fn runs_near(&self, point: D::Vector, reach: f64, run: impl FnMut(usize, usize)) {
+        self.runs(self.cells_near(point, reach), run);
+    }
+
+    /// Lowest and highest coordinates of the cells within `reach` [m] of a point.
+    #[inline(always)]
+    fn cells_near(&self, point: D::Vector, reach: f64) -> [[usize; 3]; 2] {
+        [self.grid.coordinates(|a| point[a] - reach), self.grid.coordinates(|a| point[a] + reach)]
+    }
+
+    #[inline(always)]
+    fn runs(&self, [low, high]: [[usize; 3]; 2], mut run: impl FnMut(usize, usize)) {
         let last = D::COUNT - 1;
         let middle = if D::COUNT == 3 { low[1]..=high[1] } else { 0..=0 };
         for x in low[0]..=high[0] {
@@ -162,5 +188,44 @@ impl<D: Dimension> CellSortedPoints<D> {
                 run(first as usize, end as usize);
             }
         }
+    }
+
+    /// True if points within `reach` [m] of a point are those that `vicinity` has.
+    #[inline(always)]
+    pub fn is_known(&self, point: D::Vector, reach: f64, vicinity: &Vicinity) -> bool {
+        let [low, high] = self.cells_near(point, reach).map(|cell| self.grid.number(cell));
+        (low, high) == vicinity.cells
+    }
+
+    /// Finds the points that may lie within `reach` [m] of a point. Points of one cell see the same: where the one before
+    /// was there too, there is nothing to do.
+    #[inline(always)]
+    pub fn look_around(&self, point: D::Vector, reach: f64, vicinity: &mut Vicinity) {
+        let cells = self.cells_near(point, reach);
+        let [low, high] = cells.map(|cell| self.grid.number(cell));
+        if (low, high) == vicinity.cells {
+            return;
+        }
+        vicinity.cells = (low, high);
+        vicinity.eights.clear();
+        self.runs(cells, |first, end| {
+            vicinity.eights.extend((first..end).step_by(LANES).map(|p| (p as u32, (end - p) as u32)));
+        });
+    }
+}
+
+/// Runs of sorted points near a place, taken apart into whole lanes.
+#[derive(Clone, Debug)]
+pub struct Vicinity {
+    /// Numbers of the lowest and the highest cell.
+    cells: (usize, usize),
+    /// First of eight points, and the number of points from it to the end of the run: those beyond do not count.
+    pub eights: Vec<(u32, u32)>,
+}
+
+impl Default for Vicinity {
+    /// Nowhere yet.
+    fn default() -> Self {
+        Self { cells: (usize::MAX, 0), eights: Vec::new() }
     }
 }

@@ -13,6 +13,7 @@
 
 pub mod brute_force;
 pub mod cell_grid;
+mod draft;
 pub mod halo;
 pub mod kd_tree;
 mod motion;
@@ -25,6 +26,7 @@ use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
 use crate::lanes::LANES;
 use cell_grid::CellSortedPoints;
+use draft::Draft;
 pub use halo::Halo;
 use motion::Motion;
 use search::Search;
@@ -58,20 +60,27 @@ pub struct Reach {
 impl<D: Dimension> NeighborLists<D> {
     /// Builds lists for particles inside the box (on periodic axes), best sorted in cell order.
     pub fn build(position: &D::AxisColumns, size: &[f64], domain: &Domain<D>, reach: Reach) -> Self {
-        let n_particles = size.len();
+        let mut lists = Self::default();
+        lists.rebuild(position, size, domain, reach);
+        lists
+    }
+
+    /// Builds the lists anew, in the memory that they have.
+    pub fn rebuild(&mut self, position: &D::AxisColumns, size: &[f64], domain: &Domain<D>, reach: Reach) {
+        self.n_particles = size.len();
         let largest = size.iter().fold(0.0_f64, |a, &b| a.max(b));
         let farthest = 2.0 * reach.factor * largest + reach.skin;
-        let halo = Halo::<D>::build(position, domain, farthest);
-        let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(position, a));
+        self.halo = Halo::<D>::build(position, domain, farthest);
+        let all: D::AxisColumns = Components::from_fn(|a| self.halo.extended_position(position, a));
         let points = CellSortedPoints::<D>::new(&all, farthest.max(f64::MIN_POSITIVE));
-        let search = Search::new(&points, position, &halo, size, reach, farthest);
-        let n_tiles = n_particles.div_ceil(TILE);
-        let mut tiles: Vec<TileLists> =
-            (0..n_tiles).into_par_iter().map(|t| search.tile(t, position)).collect();
-        tile_lists::connect(&mut tiles);
-        let reference = position.as_ref().to_vec();
-        let motion = Motion::since(position, domain, farthest, reach.skin);
-        Self { n_particles, halo, tiles, reference, motion }
+        let search = Search::new(&points, position, &self.halo, size, reach, farthest);
+        let n_tiles = size.len().div_ceil(TILE);
+        self.tiles.resize_with(n_tiles, TileLists::default);
+        let tiles = self.tiles.par_iter_mut().enumerate();
+        tiles.for_each_init(|| Draft::new(n_tiles), |draft, (t, lists)| search.tile(t, draft, lists));
+        tile_lists::connect(&mut self.tiles);
+        self.reference = position.as_ref().to_vec();
+        self.motion = Motion::since(position, domain, farthest, reach.skin);
     }
 
     /// Number of particles.

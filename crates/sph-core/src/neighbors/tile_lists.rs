@@ -9,28 +9,24 @@
 use crate::lanes::{LANES, prefetch};
 use crate::neighbors::TILE;
 
-/// Marks of particles that have no place in the buffer yet: none needed, and one needed.
-const UNMET: u16 = u16::MAX;
-const MET: u16 = u16::MAX - 1;
-
 /// Lists of the particles of one tile. Only a search fills them: every entry is below the number of records, every target
 /// below the number of targets, and pair loops rely on it.
 #[derive(Clone, Debug, Default)]
 pub struct TileLists {
     /// First slot of each block, and the end of the last.
-    start: Vec<u32>,
+    pub(super) start: Vec<u32>,
     /// Number of slots that list pairs once, in the blocks before each block, and of all.
-    once: Vec<u32>,
+    pub(super) once: Vec<u32>,
     /// Slots: the k-th neighbor of each of eight particles.
-    slots: Vec<[u32; LANES]>,
+    pub(super) slots: Vec<[u32; LANES]>,
     /// Places in the tile's buffer of the neighbors in the slots that list pairs once.
-    targets: Vec<[u16; LANES]>,
+    pub(super) targets: Vec<[u16; LANES]>,
     /// Particles of other tiles that have a place in the buffer, ascending.
-    foreign: Vec<u32>,
+    pub(super) foreign: Vec<u32>,
     /// Where other tiles have sums for particles of this one.
     pub(super) incoming: Vec<Incoming>,
     /// Places of own particles in the buffer: the tile's particles, filled up to whole blocks.
-    n_own: usize,
+    pub(super) n_own: usize,
 }
 
 /// Sums that another tile has for particles of this one.
@@ -45,83 +41,6 @@ pub struct Incoming {
 }
 
 impl TileLists {
-    pub(super) fn new() -> Self {
-        Self { start: vec![0], once: vec![0], ..Self::default() }
-    }
-
-    /// Adds a block: for each lane the pairs that it owns, and those that the neighbor owns. Lists are filled up with the
-    /// particle itself, at distance zero, whose terms vanish.
-    pub(super) fn push_block(
-        &mut self,
-        first_particle: usize,
-        owned: &[Vec<u32>; LANES],
-        others: &[Vec<u32>; LANES],
-    ) {
-        for part in [owned, others] {
-            let longest = part.iter().map(Vec::len).max().unwrap_or(0);
-            for k in 0..longest {
-                let mut slot = [0; LANES];
-                for l in 0..LANES {
-                    slot[l] = part[l].get(k).copied().unwrap_or((first_particle + l) as u32);
-                }
-                self.slots.push(slot);
-            }
-            if std::ptr::eq(part, owned) {
-                self.once.push(self.once[self.once.len() - 1] + longest as u32);
-            }
-        }
-        self.start.push(self.slots.len() as u32);
-        self.n_own += LANES;
-    }
-
-    /// Places in the buffer, once all blocks are there: own particles first, then the foreign ones in their order. `seen` has
-    /// the tiles that hold particles seen from here, ascending; `owner` tells the particle of a record.
-    pub(super) fn set_targets(&mut self, tile: usize, seen: &[u32], owner: impl Fn(u32) -> u32) {
-        // Of each particle of this tile and then of the tiles that are seen: its place in the buffer.
-        let mut places = vec![UNMET; (1 + seen.len()) * TILE];
-        let first_of = |of_tile: usize| match seen.iter().position(|&s| s as usize == of_tile) {
-            _ if of_tile == tile => 0,
-            found => (1 + found.expect("a neighbor is in a tile that is seen")) * TILE,
-        };
-        let (mut of_tile, mut first) = (tile, 0);
-        let mut index = |particle: u32| {
-            // Neighbors come in runs of one tile.
-            if particle as usize / TILE != of_tile {
-                of_tile = particle as usize / TILE;
-                first = first_of(of_tile);
-            }
-            first + particle as usize % TILE
-        };
-        let n_once = self.once[self.n_blocks()] as usize;
-        let mut met = Vec::with_capacity(n_once);
-        for b in 0..self.n_blocks() {
-            let first_slot = self.start[b] as usize;
-            for slot in &self.slots[first_slot..first_slot + (self.once[b + 1] - self.once[b]) as usize] {
-                let mut at = [0; LANES];
-                for l in 0..LANES {
-                    at[l] = index(owner(slot[l])) as u32;
-                    places[at[l] as usize] = MET;
-                }
-                met.push(at);
-            }
-        }
-        let (own, others) = places.split_at_mut(TILE);
-        own.iter_mut().enumerate().for_each(|(k, place)| *place = k as u16);
-        let mut foreign = Vec::new();
-        for (&t, places) in seen.iter().zip(others.chunks_exact_mut(TILE)) {
-            for (k, place) in places.iter_mut().enumerate() {
-                if *place == MET {
-                    *place = (self.n_own + foreign.len()) as u16;
-                    foreign.push((t as usize * TILE + k) as u32);
-                }
-            }
-        }
-        assert!(self.n_own + foreign.len() < MET as usize, "tile {tile} meets {} others", foreign.len());
-        self.targets = met.iter().map(|at| at.map(|at| places[at as usize])).collect();
-        self.foreign = foreign;
-        self.slots.shrink_to_fit();
-    }
-
     /// Number of blocks.
     #[inline(always)]
     pub fn n_blocks(&self) -> usize {
@@ -189,6 +108,7 @@ impl TileLists {
 
 /// Fills the incoming sums of all tiles from their foreign particles.
 pub(super) fn connect(tiles: &mut [TileLists]) {
+    tiles.iter_mut().for_each(|tile| tile.incoming.clear());
     for s in 0..tiles.len() {
         let mut first = 0;
         while let Some(&particle) = tiles[s].foreign.get(first) {

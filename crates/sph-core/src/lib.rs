@@ -30,6 +30,7 @@ pub mod gradient;
 pub mod kernel;
 pub mod lanes;
 pub mod matrix;
+pub mod memory;
 pub mod neighbors;
 pub mod particles;
 pub mod reduce;

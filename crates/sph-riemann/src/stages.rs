@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use sph_core::lanes::{LANES, Line};
+use sph_core::memory::resize_scratch;
 use sph_core::neighbors::cell_grid::sort_particles;
 use sph_core::neighbors::{NeighborLists, Reach};
 
@@ -90,9 +91,10 @@ impl<D: SolidDimension> Simulation<D> {
             Prepared::State => [D::STATE_LINES, D::SIDES_LINES],
             Prepared::ConstantSides => [0, D::CONSTANT_SIDES_LINES],
         };
-        s.state.resize((records * of_state).max(padded * D::SUM_LINES), Line::default());
-        s.sides.resize(records * of_sides, Line::default());
-        s.rows.resize(padded / LANES * Row::count::<D>(), Line::default());
+        let of_state = (records * of_state).max(padded * D::SUM_LINES);
+        resize_scratch(&mut s.state, of_state, Line::default());
+        resize_scratch(&mut s.sides, records * of_sides, Line::default());
+        resize_scratch(&mut s.rows, padded / LANES * Row::count::<D>(), Line::default());
         s.pairs.resize(tiles, TilePairs::default());
         let size = &self.particles.size;
         s.uniform_size =

@@ -138,15 +138,16 @@ impl SlopeLimiter for VanLeer {
     const GRADIENT_MULTIPLE: f64 = 2.0;
 
     /// With q = 2 g on each side, one division d/(q_l q_r) gives ½ t = d/q of both. Half the limited difference is
-    /// d (1 - ½ t) where 0 < t < 2: where the factor lies between zero and one.
+    /// d (1 - ½ t) where 0 < t < 2: where the factor lies between zero and one. Asked for as "less than the next number above
+    /// one", which is false for NaN: the machine then takes the comparison as it is, without its opposite.
     #[inline(always)]
     fn sides<R: Real>(left: R, right: R, left_gradient: R, right_gradient: R) -> (R, R) {
-        let (zero, one) = (R::zero(), R::one());
+        let (zero, one, above_one) = (R::zero(), R::one(), R::splat(1.0_f64.next_up()));
         let minus_difference = left - right;
         let scale = minus_difference / (left_gradient * right_gradient);
         let (l, r) = (scale.mul_add(right_gradient, one), scale.mul_add(left_gradient, one));
-        let share_l = one.select_less(l, zero, l.max(zero));
-        let share_r = one.select_less(r, zero, r.max(zero));
+        let share_l = l.select_less(above_one, l.max(zero), zero);
+        let share_r = r.select_less(above_one, r.max(zero), zero);
         ((-minus_difference).mul_add(share_l, left), minus_difference.mul_add(share_r, right))
     }
 }
@@ -213,6 +214,25 @@ mod tests {
             let one = (left + VanLeer::half(right - left, l), right - VanLeer::half(right - left, r));
             let near = |a: f64, b: f64| (a - b).abs() <= 4.0 * f64::EPSILON * (b.abs() + d.abs());
             assert!(near(both.0, one.0) && near(both.1, one.1), "{d} {l} {r}: {both:?} {one:?}");
+        }
+    }
+
+    #[test]
+    fn shares_are_clipped_bit_for_bit_and_nan_gives_zero() {
+        let numbers =
+            [0.0, -0.0, 1.0, -1.0, 0.5, 1.0_f64.next_up(), 2.0, -3e9, 1e-100, f64::INFINITY, f64::NAN];
+        for (right, l, r) in
+            numbers.iter().flat_map(|&d| numbers.iter().flat_map(move |&l| numbers.map(|r| (d, l, r))))
+        {
+            let left: f64 = 0.0;
+            let scale = (left - right) / (l * r);
+            let clip = |share: f64| if share > 0.0 && share <= 1.0 { share } else { 0.0 };
+            let (share_l, share_r) = (clip(scale.mul_add(r, 1.0)), clip(scale.mul_add(l, 1.0)));
+            let expected = ((right - left).mul_add(share_l, left), (left - right).mul_add(share_r, right));
+            let found = VanLeer::sides(left, right, l, r);
+            let bits = |x: f64| if x.is_nan() { 1 } else { x.to_bits() };
+            assert_eq!(bits(found.0), bits(expected.0), "{right} {l} {r}");
+            assert_eq!(bits(found.1), bits(expected.1), "{right} {l} {r}");
         }
     }
 

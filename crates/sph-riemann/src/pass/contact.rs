@@ -48,34 +48,6 @@ pub(super) struct ContactTile<'a, 'b, D: SolidDimension, const RECONSTRUCT: bool
     pub sums: &'a [Line],
 }
 
-/// Slots whose geometry is worked out in one go, before their contacts: roots and divisions of one do not wait for the sums
-/// of another.
-const CHUNK: usize = 8;
-
-/// How eight pairs lie to each other.
-#[derive(Clone, Copy)]
-struct Approach<D: SolidDimension, L: Lanes> {
-    /// First line of the right records.
-    first_line: [L; LANES],
-    /// r_j - r_i [m], and its direction.
-    dx: D::Axes<L>,
-    e: D::Axes<L>,
-    /// w [m^(d-1)], and w over the distance [m^(d-2)].
-    weight: L,
-    weight_over_r: L,
-    /// True if time-centering needs the force of one of the pairs.
-    marked: bool,
-}
-
-impl<D: SolidDimension, L: Lanes> Approach<D, L> {
-    #[inline(always)]
-    fn nowhere() -> Self {
-        let (zero, axes) = (L::zero(), D::Axes::<L>::splat(L::zero()));
-        let (first_line, dx, e) = ([zero; LANES], axes, axes);
-        Self { first_line, dx, e, weight: zero, weight_over_r: zero, marked: false }
-    }
-}
-
 /// The limiter of the pass. The compiler must not know that `is_default` says van Leer: there is then a branch for it, and
 /// not a jump through a table for every slot.
 #[derive(Clone, Copy)]
@@ -96,6 +68,8 @@ struct PairContact<D: SolidDimension, L: Lanes> {
     right_velocity: D::Axes<L>,
     /// (U_j - U_i)² [m²/s²].
     relative_speed_squared: L,
+    /// True if time-centering needs the force of one of the pairs.
+    marked: bool,
 }
 
 impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, '_, D, RECONSTRUCT> {
@@ -103,10 +77,10 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
     fn run<L: Lanes>(self) {
         let Self { pass, index, limiter, pairs, buffer, sums } = self;
         let lists = &pass.lists.tiles()[index];
-        pairs.clear_forces();
+        pairs.clear_forces(lists.n_slots_once());
         let limiter = Chosen { limiter, is_default: black_box(limiter == Limiter::VanLeer) };
-        let mut approaches = [Approach::<D, L>::nowhere(); CHUNK];
         let ahead = Ahead::of(pass.lists, index);
+        let mut first = 0;
         for b in 0..lists.n_blocks() {
             prefetch(sums, b * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
             let lines = Left::<D, L, RECONSTRUCT>::LINES;
@@ -117,16 +91,13 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
                 &own_indices(index * sph_core::neighbors::TILE_BLOCKS + b),
             );
             let mut own = D::SumsRecord::<L>::splat(L::zero());
-            for (slots, targets) in slots.chunks(CHUNK).zip(targets.chunks(CHUNK)) {
-                let first = pairs.marked.len();
-                pairs.marked.resize(first + slots.len(), false);
-                let mut reaching = left.approaches(pass, slots, &mut approaches);
+            for (slots, targets) in slots.chunks(u32::BITS as usize).zip(targets.chunks(u32::BITS as usize)) {
+                let mut reaching = left.reaching(pass, slots);
                 while reaching != 0 {
                     let k = reaching.trailing_zeros() as usize;
                     reaching &= reaching - 1;
-                    let approach = &approaches[k];
-                    let pair = left.contact(pass, limiter, &slots[k], approach);
-                    if approach.marked {
+                    let pair = left.contact(pass, limiter, &slots[k]);
+                    if pair.marked {
                         pairs.marked[first + k] = true;
                         for a in 0..D::COUNT {
                             pairs.forces.push(Line::default());
@@ -138,6 +109,7 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
                     // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
                     unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k].map(u32::from)) };
                 }
+                first += slots.len();
             }
             // SAFETY: as above; places of own particles come first.
             unsafe { add_to_buffer::<D, L>(&own, buffer, &own_indices(b)) };
@@ -194,78 +166,70 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
         other
     }
 
-    /// Fills in how the pairs of some slots lie to each other. Bit k of the result is set where slot k has a pair within
-    /// the support of the kernel.
+    /// Bit k is set where slot k has a pair within the support of the kernel, or at its very edge. That is told of all slots
+    /// before their contacts: no root or division waits for a branch that was not foreseen.
     #[inline(always)]
-    fn approaches(
-        &self,
-        pass: &Pass<'_, D>,
-        slots: &[[u32; LANES]],
-        approaches: &mut [Approach<D, L>; CHUNK],
-    ) -> u32 {
+    fn reaching(&self, pass: &Pass<'_, D>, slots: &[[u32; LANES]]) -> u32 {
         let mut reaching = 0;
-        for (k, to) in (0..slots.len()).zip(approaches) {
+        for (k, slot) in slots.iter().enumerate() {
             // SAFETY: entries of a list are below `n_records`, the length of the records.
-            let first_line = unsafe { L::load_records(pass.records, Self::LINES, 0, &slots[k]) };
-            let mut dx = D::Axes::<L>::splat(L::zero());
-            for a in 0..D::COUNT {
-                dx[a] = first_line[a] - self.record[a];
-            }
-            let r = dot::<D, L>(&dx, &dx).sqrt();
-            let scales = pass.smoothing.scales(self.size, &slots[k]);
-            let q = r * scales.inverse_h;
-            // A particle stands in for missing neighbors of its own: e = 0 there, and all is zero.
-            let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
-            let volume = first_line[Sides::volume::<D>()];
-            let volumes = self.twice_volume * volume.abs();
-            // Position and volume have served.
-            let rest = D::COUNT + 1..LANES;
-            to.first_line[rest.clone()].copy_from_slice(&first_line[rest]);
-            for a in 0..D::COUNT {
-                to.dx[a] = dx[a];
-                to.e[a] = dx[a] * inverse_r;
-            }
-            to.weight_over_r = volumes * (scales.slope * pass.smoothing.minus_slope_over_q(q));
-            to.weight = to.weight_over_r * r;
-            to.marked = self.marked || volume.any_less(L::zero());
-            reaching |= u32::from(q.any_less(L::splat(pass.smoothing.support()))) << k;
+            let right = unsafe { L::load_records(pass.records, Self::LINES, 0, slot) };
+            let dx = self.distance(&right);
+            let reach_squared = pass.smoothing.reach_squared(self.size, slot);
+            reaching |= u32::from(dot::<D, L>(&dx, &dx).any_less(reach_squared)) << k;
         }
         reaching
     }
 
+    /// r_j - r_i [m] from the first line of the right records.
+    #[inline(always)]
+    fn distance(&self, right: &[L; LANES]) -> D::Axes<L> {
+        let mut dx = D::Axes::<L>::splat(L::zero());
+        for a in 0..D::COUNT {
+            dx[a] = right[a] - self.record[a];
+        }
+        dx
+    }
+
     /// The contacts of eight pairs.
     #[inline(always)]
-    fn contact(
-        &self,
-        pass: &Pass<'_, D>,
-        limiter: Chosen,
-        slot: &[u32; LANES],
-        approach: &Approach<D, L>,
-    ) -> PairContact<D, L> {
+    fn contact(&self, pass: &Pass<'_, D>, limiter: Chosen, slot: &[u32; LANES]) -> PairContact<D, L> {
         let left = &self.record;
         let mut right = D::SidesRecord::<L>::splat(L::zero());
+        // SAFETY: entries of a list are below `n_records`, the length of the records.
+        let first_line = unsafe { L::load_records(pass.records, Self::LINES, 0, slot) };
         for k in 0..LANES {
-            right[k] = approach.first_line[k];
+            right[k] = first_line[k];
         }
+        let dx = self.distance(&first_line);
+        let r = dot::<D, L>(&dx, &dx).sqrt();
         for line in 1..Self::LINES {
             // SAFETY: entries of a list are below `n_records`, the length of the records.
             unsafe { load_line(&mut right, pass.records, Self::LINES, line, slot) };
         }
-        let (mut gradient, mut du, mut right_velocity) = (approach.dx, approach.dx, approach.dx);
+        // A particle stands in for missing neighbors of its own: e = 0 there, and all is zero.
+        let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
+        let scales = pass.smoothing.scales(self.size, slot);
+        let slope = scales.slope * pass.smoothing.minus_slope_over_q(r * scales.inverse_h);
+        let volume = right[Sides::volume::<D>()];
+        let weight_over_r = self.twice_volume * volume.abs() * slope;
+        let weight = weight_over_r * r;
+        let (mut e, mut gradient, mut du, mut right_velocity) = (dx, dx, dx, dx);
         for a in 0..D::COUNT {
-            gradient[a] = approach.weight_over_r * approach.dx[a];
+            e[a] = dx[a] * inverse_r;
+            gradient[a] = weight_over_r * dx[a];
             right_velocity[a] = right[Sides::fields::<D>() + a];
             du[a] = right_velocity[a] - left[Sides::fields::<D>() + a];
         }
-        let sides = Pair { left, right: &right, dx: &approach.dx, e: &approach.e };
-        let (velocity, mut force) = sides.star::<RECONSTRUCT>(pass, limiter);
+        let (velocity, mut force) =
+            Pair { left, right: &right, dx: &dx, e: &e }.star::<RECONSTRUCT>(pass, limiter);
         for a in 0..D::COUNT {
-            force[a] = approach.weight * force[a];
+            force[a] = weight * force[a];
         }
         // Pairs of the skin do not count: when lists are rebuilt must not matter.
-        let relative_speed_squared =
-            L::zero().select_less(approach.weight_over_r, dot::<D, L>(&du, &du), L::zero());
-        PairContact { gradient, force, velocity, right_velocity, relative_speed_squared }
+        let relative_speed_squared = L::zero().select_less(weight_over_r, dot::<D, L>(&du, &du), L::zero());
+        let marked = self.marked || volume.any_less(L::zero());
+        PairContact { gradient, force, velocity, right_velocity, relative_speed_squared, marked }
     }
 }
 

@@ -88,7 +88,6 @@ fn sum_over_neighbors<D: SolidDimension, L: Lanes>(
 ) -> Sums<D, L> {
     let smoothing = pass.smoothing;
     let own_size = smoothing.own::<L>(indices);
-    let support = L::splat(smoothing.support());
     let mut matrix = D::Symmetric::<L>::splat(L::zero());
     let mut raw = D::Fields::<D::Axes<L>>::splat(D::Axes::<L>::splat(L::zero()));
     for slot in slots {
@@ -97,11 +96,12 @@ fn sum_over_neighbors<D: SolidDimension, L: Lanes>(
         for a in 0..D::COUNT {
             dx[a] = other[a] - own[a];
         }
-        let scales = smoothing.scales(own_size, slot);
-        let q = crate::dimension::dot::<D, L>(&dx, &dx).sqrt() * scales.inverse_h;
-        if !q.any_less(support) {
+        let distance_squared = crate::dimension::dot::<D, L>(&dx, &dx);
+        if !distance_squared.any_less(smoothing.reach_squared(own_size, slot)) {
             continue; // Pairs of the skin add exact zeros.
         }
+        let scales = smoothing.scales(own_size, slot);
+        let q = distance_squared.sqrt() * scales.inverse_h;
         let weight = other[State::volume::<D>()] * scales.slope * smoothing.minus_slope_over_q(q);
         let mut gradient = dx;
         for a in 0..D::COUNT {

@@ -35,6 +35,8 @@ pub struct Smoothing<'a> {
     normalization: f64,
     power: i32,
     uniform: Option<Scales<f64>>,
+    /// Reach of the kernel where all have one size [m], else over the sum of two sizes [-]; a few roundings longer.
+    reach: f64,
     size: &'a [f64],
 }
 
@@ -56,17 +58,30 @@ impl<'a> Smoothing<'a> {
             let inverse_h = 1.0 / (2.0 * theta * size);
             Scales { inverse_h, slope: normalization * inverse_h.powi(power) }
         };
-        let (uniform, size): (_, &[f64]) = match sizes {
-            Sizes::Uniform(size) => (Some(scales(size)), &[]),
-            Sizes::Each(sizes) => (None, sizes),
+        let reach = kernel.support() * theta * (1.0 + 8.0 * f64::EPSILON);
+        let (uniform, reach, size): (_, _, &[f64]) = match sizes {
+            Sizes::Uniform(size) => (Some(scales(size)), 2.0 * reach * size, &[]),
+            Sizes::Each(sizes) => (None, reach, sizes),
         };
         let is_default = black_box(kernel == KernelFamily::WendlandC2);
-        Self { kernel, is_default, theta, normalization, power, uniform, size }
+        Self { kernel, is_default, theta, normalization, power, uniform, reach, size }
     }
 
     /// Radius of the support in smoothing lengths.
     pub fn support(&self) -> f64 {
         self.kernel.support()
+    }
+
+    /// Squared distance beyond which pairs are out of reach of the kernel [m²]: told without a root. Pairs at the very edge
+    /// may lie within it, and have a slope of zero.
+    #[inline(always)]
+    pub(super) fn reach_squared<L: Lanes>(&self, own: L, indices: &[u32; LANES]) -> L {
+        let reach = if self.uniform.is_some() {
+            L::splat(self.reach)
+        } else {
+            L::splat(self.reach) * (own + L::gather(self.size, indices))
+        };
+        reach * reach
     }
 
     /// Sizes of eight particles, where they are needed.
@@ -94,5 +109,52 @@ impl<'a> Smoothing<'a> {
     #[inline(always)]
     pub(super) fn minus_slope_over_q<L: Lanes>(&self, q: L) -> L {
         if self.is_default { WendlandC2::minus_slope_over_q(q) } else { self.kernel.minus_slope_over_q(q) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sph_core::lanes::{LaneKernel, dispatch};
+
+    /// Pairs whose distances q are within a few roundings of the edge of the support.
+    struct AtTheEdge<'a>(Smoothing<'a>, &'a mut Vec<(f64, bool)>);
+
+    impl LaneKernel for AtTheEdge<'_> {
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            let (smoothing, indices) = (self.0, [0, 1, 2, 3, 4, 5, 6, 7]);
+            let own = smoothing.own::<L>(&indices);
+            let scales = smoothing.scales(own, &indices);
+            for ulp in -40..=40 {
+                let edge = L::splat(smoothing.support() * (1.0 + f64::from(ulp) * f64::EPSILON));
+                let dx = edge / scales.inverse_h;
+                let squared = dx * dx;
+                let q = squared.sqrt() * scales.inverse_h;
+                let within = squared.less_mask(smoothing.reach_squared(own, &indices));
+                for (l, q) in q.to_array().into_iter().enumerate() {
+                    self.1.push((q, within >> l & 1 == 1));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_pair_within_the_support_is_out_of_reach() {
+        let sizes: Vec<f64> = (0..8).map(|k| 1e-6 * (1.0 + 0.37 * f64::from(k))).collect();
+        for sizes in [Sizes::Uniform(3.3e-7), Sizes::Each(&sizes)] {
+            for kernel in [KernelFamily::WendlandC2, KernelFamily::CubicSpline] {
+                for theta in [0.5, 0.55, 0.6, 0.7] {
+                    let mut seen = Vec::new();
+                    dispatch(AtTheEdge(Smoothing::new(kernel, theta, 2, sizes), &mut seen));
+                    assert!(
+                        seen.iter().all(|&(q, within)| within || q >= kernel.support()),
+                        "{theta} {seen:?}"
+                    );
+                    assert!(seen.iter().any(|&(_, within)| !within), "only the very edge counts as within");
+                    assert!(seen.iter().any(|&(q, _)| q < kernel.support()));
+                }
+            }
+        }
     }
 }

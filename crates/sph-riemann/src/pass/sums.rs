@@ -34,8 +34,10 @@ impl TilePairs {
         (self.foreign.len() + self.forces.len()) * size_of::<Line>() + self.marked.len()
     }
 
-    pub(super) fn clear_forces(&mut self) {
+    /// No slot of `n_slots` is marked.
+    pub(super) fn clear_forces(&mut self, n_slots: usize) {
         self.marked.clear();
+        self.marked.resize(n_slots, false);
         self.forces.clear();
     }
 

@@ -9,7 +9,7 @@ pub enum StepStage {
     Lists,
     /// Volume sums.
     Volume,
-    /// Equations of state, records, halo, time step.
+    /// Images of records across periodic sides, time step; after a rebuild equations of state and records too.
     Prepare,
     /// First pass: gradients and half step; printed surface rules.
     Gradient,
@@ -17,7 +17,7 @@ pub enum StepStage {
     Contact,
     /// Time-centering at free surfaces.
     Centering,
-    /// Update of the state.
+    /// Update of the state, equations of state and records of the next step.
     Update,
 }
 
@@ -38,7 +38,7 @@ impl StepStage {
         match self {
             Self::Lists => "neighbor lists",
             Self::Volume => "volume sums",
-            Self::Prepare => "equations of state",
+            Self::Prepare => "images, time step",
             Self::Gradient => "gradients",
             Self::Contact => "contacts",
             Self::Centering => "time-centering",

@@ -39,7 +39,6 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
         let (i, context, columns) = (self.first + k, &self.context, &self.columns);
         let block = k / LANES * Row::count::<D>();
         prefetch(rows, block, Row::count::<D>());
-        prefetch(self.written.sums, k * D::SUM_LINES, LANES * D::SUM_LINES);
         if context.settings.scheme.reconstructs() {
             let of_correction = Sides::correction::<D>() / LANES;
             for l in 0..LANES {

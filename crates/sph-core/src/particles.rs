@@ -258,14 +258,18 @@ impl<D: Dimension> Particles<D> {
 
     /// Replaces the particles by those of `order`, in that order (a permutation, or a selection).
     pub fn gather(&mut self, order: &[u32]) {
-        fn pick<T: Copy>(column: &mut Vec<T>, order: &[u32]) {
-            *column = order.iter().map(|&i| column[i as usize]).collect();
+        fn pick<T: Copy>(column: &mut Vec<T>, order: &[u32], spare: &mut Vec<T>) {
+            spare.clear();
+            spare.extend(order.iter().map(|&i| column[i as usize]));
+            std::mem::swap(column, spare);
         }
-        pick(&mut self.id, order);
-        pick(&mut self.material, order);
-        pick(&mut self.constraint, order);
-        pick(&mut self.failed, order);
-        self.columns_mut().into_par_iter().for_each(|column| pick(column, order));
+        pick(&mut self.id, order, &mut Vec::new());
+        pick(&mut self.material, order, &mut Vec::new());
+        pick(&mut self.constraint, order, &mut Vec::new());
+        pick(&mut self.failed, order, &mut Vec::new());
+        // Each column takes the memory of the one before.
+        let columns = self.columns_mut().into_par_iter();
+        columns.for_each_init(Vec::new, |spare, column| pick(column, order, spare));
     }
 }
 

@@ -126,7 +126,8 @@ impl<D: SolidDimension> Simulation<D> {
 
     pub(crate) fn measure_volumes(&mut self) {
         if let Some(settings) = self.settings.volume_consistency {
-            volume::measure(&mut self.particles, &self.domain, &settings, self.instructions);
+            let workspace = self.lists.workspace_mut();
+            volume::measure(&mut self.particles, &self.domain, &settings, self.instructions, workspace);
         }
     }
 

@@ -26,7 +26,6 @@
 //! size per neighborhood.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 use sph_core::dimension::{Components, Dimension};
@@ -34,7 +33,7 @@ use sph_core::domain::Domain;
 use sph_core::geometry::{Lattice, lattice_volume_sum};
 use sph_core::kernel::KernelFamily;
 use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, dispatch_with};
-use sph_core::neighbors::cell_grid::{CellSortedPoints, Vicinity};
+use sph_core::neighbors::cell_grid::{CellSortedPoints, Vicinity, Workspace};
 use sph_core::neighbors::{Halo, TILE};
 use sph_core::particles::{Constraint, Particles};
 
@@ -49,21 +48,23 @@ pub fn measure<D: Dimension>(
     domain: &Domain<D>,
     settings: &VolumeConsistency,
     instructions: InstructionSet,
+    workspace: &mut Workspace<D>,
 ) {
     let largest = particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
     if particles.is_empty() || largest == 0.0 {
         return;
     }
-    let sums =
-        sums(particles, domain, settings.width, KERNEL.support() * settings.width * largest, instructions);
+    let reach = KERNEL.support() * settings.width * largest;
+    sum(particles, domain, (settings.width, reach), instructions, workspace);
+    let (sums, place_of) = (&workspace.numbers[2], &workspace.records);
     let perfect = if D::COUNT == 2 { Lattice::Square } else { Lattice::Cubic };
     let lattice = lattice_volume_sum(perfect, settings.width, KERNEL);
     let from_start = settings.reference == PackingReference::Start;
     let normalization = KERNEL.normalization(D::COUNT);
     let columns = particles.packing_excess.par_iter_mut().zip(&mut particles.packing_reference);
-    columns.zip(&sums).zip(&particles.size).with_min_len(TILE).for_each(
-        |(((excess, reference), sum), size)| {
-            let total = f64::from_bits(sum.load(Ordering::Relaxed));
+    columns.zip(place_of).zip(&particles.size).with_min_len(TILE).for_each(
+        |(((excess, reference), &place), size)| {
+            let total = sums[place as usize];
             let near_imposed = total.is_sign_negative();
             let sum = normalization / (settings.width * size).powi(D::COUNT as i32) * total;
             if from_start && !near_imposed && *reference == 0.0 {
@@ -75,36 +76,36 @@ pub fn measure<D: Dimension>(
     );
 }
 
-/// Σ V_j w(r/h) of every particle without normalization, as bits; with a minus sign where an imposed particle is within
-/// the support. (They are found in the order of the cells, which threads share: atomic numbers take them in any order.)
-fn sums<D: Dimension>(
+/// Fills a column of the sorted points with Σ V_j w(r/h) without normalization, with a minus sign where an imposed particle
+/// is within the support, and tells the place of every particle among these points.
+fn sum<D: Dimension>(
     particles: &Particles<D>,
     domain: &Domain<D>,
-    width: f64,
-    reach: f64,
+    (width, reach): (f64, f64),
     instructions: InstructionSet,
-) -> Vec<AtomicU64> {
+    workspace: &mut Workspace<D>,
+) {
     // Particles may have left the box since their lists were built.
     let inside = |a: usize| particles.position[a].par_iter().map(|&x| domain.wrap(a, x)).collect();
     let own: D::AxisColumns = Components::from_fn(inside);
     let halo = Halo::<D>::build(&own, domain, reach);
-    let all: D::AxisColumns = Components::from_fn(|a| halo.extended_position(&own, a));
-    let points = &CellSortedPoints::<D>::new(&all, 0.5 * reach);
+    let Workspace { points, numbers: [volume, smoothing, sums], records: place_of } = workspace;
+    points.sort(&own, &halo, 0.5 * reach);
     let n = particles.len();
     let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
-    let volume = points.column(|i| particles.mass[owner(i)] / particles.density[owner(i)], 0.0);
-    let imposed = points.column(|i| particles.constraint[owner(i)] != Constraint::Free, false);
-    let smoothing = points.column(|i| width * particles.size[owner(i)], 1.0);
-    let sums: Vec<AtomicU64> = (0..n).map(|_| AtomicU64::new(0)).collect();
-    let sum = &VolumeSum { points, volume: &volume, imposed: &imposed, smoothing: &smoothing, sums: &sums };
-    (0..points.index.len().div_ceil(PART)).into_par_iter().for_each_init(
-        Vicinity::default,
-        |vicinity, part| {
-            let part = part * PART..((part + 1) * PART).min(points.index.len());
-            dispatch_with(instructions, VolumeSumPart { sum, part, vicinity });
-        },
-    );
-    sums
+    points.column(|i| particles.mass[owner(i)] / particles.density[owner(i)], 0.0, volume);
+    points.column(|i| width * particles.size[owner(i)], 1.0, smoothing);
+    let mut imposed = Vec::new();
+    points.column(|i| particles.constraint[owner(i)] != Constraint::Free, false, &mut imposed);
+    place_of.resize(n, 0);
+    for (p, &i) in points.index().iter().enumerate().filter(|(_, i)| (**i as usize) < n) {
+        place_of[i as usize] = p as u32;
+    }
+    sums.resize(points.index().len(), 0.0);
+    let sum = &VolumeSum { points: &*points, n_particles: n, volume, imposed: &imposed, smoothing };
+    sums.par_chunks_mut(PART).enumerate().for_each_init(Vicinity::default, |vicinity, (part, sums)| {
+        dispatch_with(instructions, VolumeSumPart { sum, first: part * PART, sums, vicinity });
+    });
 }
 
 /// Sorted points that one thread sums over in one go.
@@ -114,17 +115,18 @@ const GROUP: usize = 8;
 
 struct VolumeSum<'a, D: Dimension> {
     points: &'a CellSortedPoints<D>,
+    n_particles: usize,
     /// Columns of the sorted points.
     volume: &'a [f64],
     imposed: &'a [bool],
     smoothing: &'a [f64],
-    /// By particle.
-    sums: &'a [AtomicU64],
 }
 
 struct VolumeSumPart<'a, D: Dimension> {
     sum: &'a VolumeSum<'a, D>,
-    part: Range<usize>,
+    /// The first of the points, and the sums of all of them.
+    first: usize,
+    sums: &'a mut [f64],
     vicinity: &'a mut Vicinity,
 }
 
@@ -132,22 +134,22 @@ impl<D: Dimension> LaneKernel for VolumeSumPart<'_, D> {
     /// Points that see the same candidates follow each other: those are fetched once for all of them.
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { sum, part, vicinity } = self;
-        let mut first = part.start;
-        while first < part.end {
+        let Self { sum, first: start, sums, vicinity } = self;
+        let (mut first, end_of_part) = (start, start + sums.len());
+        while first < end_of_part {
             if sum.is_copy(first) {
                 first += 1;
                 continue;
             }
             sum.points.look_around(sum.point(first), sum.reach(first), vicinity);
             let mut end = first + 1;
-            while end < part.end.min(first + GROUP)
+            while end < end_of_part.min(first + GROUP)
                 && !sum.is_copy(end)
                 && sum.points.is_known(sum.point(end), sum.reach(end), vicinity)
             {
                 end += 1;
             }
-            sum.group::<L>(first..end, vicinity);
+            sum.group::<L>(first..end, vicinity, &mut sums[first - start..end - start]);
             first = end;
         }
     }
@@ -166,12 +168,12 @@ impl<D: Dimension> VolumeSum<'_, D> {
 
     #[inline(always)]
     fn is_copy(&self, p: usize) -> bool {
-        self.points.index[p] as usize >= self.sums.len()
+        self.points.index()[p] as usize >= self.n_particles
     }
 
     /// The sums of some points that see the same candidates.
     #[inline(always)]
-    fn group<L: Lanes>(&self, group: Range<usize>, vicinity: &Vicinity) {
+    fn group<L: Lanes>(&self, group: Range<usize>, vicinity: &Vicinity, sums: &mut [f64]) {
         let lane = L::load(&std::array::from_fn(|l| l as f64));
         let (mut totals, mut near_imposed) = ([L::zero(); GROUP], [false; GROUP]);
         let mut inverse = [0.0; GROUP];
@@ -183,7 +185,7 @@ impl<D: Dimension> VolumeSum<'_, D> {
             };
             let volume = lane.select_less(L::splat(count as f64), load(self.volume), L::zero());
             let at: D::Axes<L> = Components::from_fn(|a| load(&self.points.position[a]));
-            let imposed = self.imposed[eight.clone()].contains(&true);
+            let imposed = self.imposed[eight.start..].first_chunk() != Some(&[false; LANES]);
             for (k, p) in group.clone().enumerate() {
                 let mut r2 = L::zero();
                 for a in 0..D::COUNT {
@@ -197,10 +199,9 @@ impl<D: Dimension> VolumeSum<'_, D> {
                 }
             }
         }
-        for (k, p) in group.enumerate() {
+        for (k, sum) in sums.iter_mut().enumerate() {
             let total: f64 = totals[k].to_array().iter().sum();
-            let total = if near_imposed[k] { -total } else { total };
-            self.sums[self.points.index[p] as usize].store(total.to_bits(), Ordering::Relaxed);
+            *sum = if near_imposed[k] { -total } else { total };
         }
     }
 

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
 use crate::lanes::LANES;
+use crate::neighbors::Halo;
 use crate::particles::Particles;
 
 /// Width, in cells, of the strips that particles are ordered along. Neighbors are then a few lines of a strip away, or
@@ -27,21 +28,16 @@ pub struct CellGrid<D: Dimension> {
 }
 
 impl<D: Dimension> CellGrid<D> {
-    /// Cells at least `width` [m] wide around all points.
-    pub fn around(position: &[&[f64]], width: f64) -> Self {
-        let bounds = |a: usize| {
-            position[a].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), &x| (l.min(x), u.max(x)))
-        };
-        let bounds: Vec<(f64, f64)> = (0..D::COUNT).map(bounds).collect();
-        let mut width = width;
+    /// Cells at least `width` [m] wide between the least and the largest coordinates along each axis [m].
+    fn between(bounds: D::Axes<[f64; 2]>, mut width: f64) -> Self {
         loop {
             let mut count = [1; 3];
             for a in 0..D::COUNT {
-                let extent = (bounds[a].1 - bounds[a].0).max(0.0);
+                let extent = (bounds[a][1] - bounds[a][0]).max(0.0);
                 count[a] = (extent / width).min(1e9) as usize + 1;
             }
             if count.iter().map(|&n| n as f64).product::<f64>() <= MAX_CELLS as f64 {
-                let lower = D::vector(|a| if bounds[a].0.is_finite() { bounds[a].0 } else { 0.0 });
+                let lower = D::vector(|a| if bounds[a][0].is_finite() { bounds[a][0] } else { 0.0 });
                 return Self { lower, inverse_width: 1.0 / width, count };
             }
             width *= 1.5;
@@ -64,8 +60,8 @@ impl<D: Dimension> CellGrid<D> {
         let mut at = [0; 3];
         for a in 0..D::COUNT {
             let c = (point(a) - self.lower[a]) * self.inverse_width;
-            // The cast saturates: points outside fall into the outermost cells.
-            at[a] = (c as usize).min(self.count[a] - 1);
+            // The cast saturates (a cheap one, to 32 bits): points outside fall into the outermost cells.
+            at[a] = (c as u32 as usize).min(self.count[a] - 1);
         }
         at
     }
@@ -91,75 +87,178 @@ impl<D: Dimension> CellGrid<D> {
     }
 }
 
-/// Stable counting sort: indices `0..keys.len()` by key, and the first place of every key.
-pub(crate) fn counting_sort(keys: &[u32], n_keys: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut start = vec![0u32; n_keys + 1];
-    for &key in keys {
-        start[key as usize + 1] += 1;
+/// Least and largest of some numbers; infinite, the other way around, without any.
+pub(crate) fn bounds(numbers: &[f64]) -> [f64; 2] {
+    let least = |a: f64, b: f64| if b < a { b } else { a };
+    // Eight chains at a time do not wait for each other.
+    let of_part = |part: &[f64]| {
+        let (eights, rest) = part.as_chunks::<LANES>();
+        let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::INFINITY; LANES]);
+        for eight in eights {
+            for l in 0..LANES {
+                low[l] = least(low[l], eight[l]);
+                high[l] = least(high[l], -eight[l]);
+            }
+        }
+        let both = |mut a: [f64; 2], b: [f64; 2]| {
+            (0..2).for_each(|k| a[k] = least(a[k], b[k]));
+            a
+        };
+        let rest = rest.iter().map(|&x| [x, -x]);
+        low.into_iter().zip(high).map(|(l, h)| [l, h]).chain(rest).fold([f64::INFINITY; 2], both)
+    };
+    let parts = numbers.par_chunks(PART).map(of_part);
+    let [low, high] = parts.reduce(|| [f64::INFINITY; 2], |a, b| [least(a[0], b[0]), least(a[1], b[1])]);
+    [low, -high]
+}
+
+/// Numbers that one thread looks at in one go.
+const PART: usize = 1 << 14;
+
+/// Indices sorted by key, with the buffers that sorting needs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CountingSort {
+    keys: Vec<u32>,
+    /// Indices by key; in their order where keys are equal.
+    pub order: Vec<u32>,
+    /// First place of every key, and the end of the last.
+    pub start: Vec<u32>,
+}
+
+impl CountingSort {
+    /// Sorts the indices below `count`, whose keys are below `n_keys`. Each thread sorts what has keys in its own range:
+    /// every thread reads all keys, but none writes where another does.
+    pub fn sort(&mut self, count: usize, n_keys: usize, key: impl Fn(usize) -> u32 + Send + Sync) {
+        let Self { keys, order, start } = self;
+        (0..count).into_par_iter().with_min_len(PART).map(key).collect_into_vec(keys);
+        let keys = keys.as_slice();
+        let span = n_keys.div_ceil(rayon::current_num_threads()).max(1);
+        // `start[k + 2]` counts key k, then `start[k + 1]` is its next place, and `start[k]` its first in the end.
+        start.clear();
+        start.resize(n_keys + 2, 0);
+        start[2..].par_chunks_mut(span).enumerate().for_each(|(range, counts)| {
+            for &key in keys {
+                if let Some(count) = counts.get_mut((key as usize).wrapping_sub(range * span)) {
+                    *count += 1;
+                }
+            }
+        });
+        for k in 2..start.len() {
+            start[k] += start[k - 1];
+        }
+        order.resize(count, 0);
+        let ends = (1..=n_keys.div_ceil(span)).map(|range| start[1 + (range * span).min(n_keys)] as usize);
+        let (mut rest, mut first) = (order.as_mut_slice(), 0);
+        let split = |end: usize| {
+            let (part, behind) =
+                std::mem::take(&mut rest).split_at_mut(end - std::mem::replace(&mut first, end));
+            rest = behind;
+            part
+        };
+        let parts: Vec<&mut [u32]> = ends.map(split).collect();
+        let ranges = start[1..=n_keys].par_chunks_mut(span).zip(parts).enumerate();
+        ranges.for_each(|(range, (next, part))| {
+            let first = next[0];
+            for (i, &key) in keys.iter().enumerate() {
+                if let Some(next) = next.get_mut((key as usize).wrapping_sub(range * span)) {
+                    part[(*next - first) as usize] = i as u32;
+                    *next += 1;
+                }
+            }
+        });
+        start.truncate(n_keys + 1);
     }
-    for k in 0..n_keys {
-        start[k + 1] += start[k];
+
+    /// Bytes in use.
+    pub fn bytes(&self) -> usize {
+        (self.keys.len() + self.order.len() + self.start.len()) * 4
     }
-    let mut next = start.clone();
-    let mut order = vec![0u32; keys.len()];
-    for (i, &key) in keys.iter().enumerate() {
-        order[next[key as usize] as usize] = i as u32;
-        next[key as usize] += 1;
-    }
-    (order, start)
 }
 
 /// Moves particles into the box on periodic axes and sorts them in cell order: along strips of cells of the given width
 /// [m]. Particles of one cell keep their order.
 pub fn sort_particles<D: Dimension>(particles: &mut Particles<D>, domain: &Domain<D>, width: f64) {
     for a in (0..D::COUNT).filter(|&a| domain.periodic[a]) {
-        particles.position[a].iter_mut().for_each(|x| *x = domain.wrap(a, *x));
+        particles.position[a].par_iter_mut().with_min_len(PART).for_each(|x| *x = domain.wrap(a, *x));
     }
-    let columns: Vec<&[f64]> = particles.position.as_ref().iter().map(Vec::as_slice).collect();
-    let grid = CellGrid::<D>::around(&columns, width);
-    let key = |i: usize| grid.strip_rank(grid.coordinates(|a| columns[a][i])) as u32;
-    let keys: Vec<u32> = (0..particles.len()).into_par_iter().map(key).collect();
-    let (order, _) = counting_sort(&keys, grid.strip_ranks());
-    if order.iter().enumerate().any(|(k, &i)| k as u32 != i) {
-        particles.gather(&order);
+    let position = &particles.position;
+    let grid = CellGrid::<D>::between(Components::from_fn(|a| bounds(&position[a])), width);
+    let mut sort = CountingSort::default();
+    let key = |i: usize| grid.strip_rank(grid.coordinates(|a| position[a][i])) as u32;
+    sort.sort(particles.len(), grid.strip_ranks(), key);
+    if sort.order.iter().enumerate().any(|(k, &i)| k as u32 != i) {
+        particles.gather(&sort.order);
     }
 }
 
-/// Points sorted by cell: runs of cells along the last axis are runs of points.
+/// Particles and their copies sorted by cell: runs of cells along the last axis are runs of points.
 #[derive(Clone, Debug)]
 pub struct CellSortedPoints<D: Dimension> {
     grid: CellGrid<D>,
-    /// First point of every cell.
-    start: Vec<u32>,
-    /// Index of each point in the order that it was given in.
-    pub index: Vec<u32>,
+    /// The points by cell: indices of particles, then those of copies.
+    sort: CountingSort,
     /// Coordinates of each point, sorted, and of as many as eight behind them that are [`FAR`] from all [m].
     pub position: D::AxisColumns,
 }
 
+impl<D: Dimension> Default for CellSortedPoints<D> {
+    fn default() -> Self {
+        let grid = CellGrid::between(Components::splat([0.0; 2]), 1.0);
+        Self { grid, sort: CountingSort::default(), position: Components::from_fn(|_| Vec::new()) }
+    }
+}
+
 impl<D: Dimension> CellSortedPoints<D> {
-    /// Sorts points into cells at least `width` [m] wide.
-    pub fn new(position: &D::AxisColumns, width: f64) -> Self {
-        let columns: Vec<&[f64]> = position.as_ref().iter().map(Vec::as_slice).collect();
-        let grid = CellGrid::<D>::around(&columns, width);
-        let key = |i: usize| grid.number(grid.coordinates(|a| columns[a][i])) as u32;
-        let keys: Vec<u32> = (0..columns[0].len()).into_par_iter().map(key).collect();
-        let (index, start) = counting_sort(&keys, grid.len());
-        let mut points = Self { grid, start, index, position: Components::from_fn(|_| Vec::new()) };
-        points.position = Components::from_fn(|a| points.column(|i| columns[a][i as usize], FAR));
+    /// Sorts particles and their copies into cells at least `width` [m] wide.
+    pub fn new(position: &D::AxisColumns, halo: &Halo<D>, width: f64) -> Self {
+        let mut points = Self::default();
+        points.sort(position, halo, width);
         points
     }
 
-    /// Numbers of the points, told by their index, in the order of the cells, and of the filling behind them.
+    /// Sorts anew, in the memory that there is.
+    pub fn sort(&mut self, position: &D::AxisColumns, halo: &Halo<D>, width: f64) {
+        let n = position[0].len();
+        let coordinate = |i: usize, a: usize| match i.checked_sub(n) {
+            None => position[a][i],
+            Some(copy) => position[a][halo.owner[copy] as usize] + halo.shift[copy][a],
+        };
+        let all_bounds = |a: usize| {
+            let copies: Vec<f64> = (n..n + halo.len()).map(|i| coordinate(i, a)).collect();
+            let ([low, high], [l, h]) = (bounds(&position[a]), bounds(&copies));
+            [low.min(l), high.max(h)]
+        };
+        let grid = CellGrid::<D>::between(Components::from_fn(all_bounds), width);
+        let key = |i: usize| grid.number(grid.coordinates(|a| coordinate(i, a))) as u32;
+        self.sort.sort(n + halo.len(), grid.len(), key);
+        self.grid = grid;
+        for a in 0..D::COUNT {
+            let mut column = std::mem::take(&mut self.position[a]);
+            self.column(|i| coordinate(i as usize, a), FAR, &mut column);
+            self.position[a] = column;
+        }
+    }
+
+    /// Fills a column with numbers of the points, told by their index, in the order of the cells, and of the filling behind
+    /// them.
     pub fn column<T: Copy + Send + Sync>(
         &self,
         value: impl Fn(u32) -> T + Sync + Send,
         filling: T,
-    ) -> Vec<T> {
-        let mut column = Vec::with_capacity(self.index.len() + LANES);
-        self.index.par_iter().map(|&i| value(i)).collect_into_vec(&mut column);
-        column.extend([filling; LANES]);
-        column
+        column: &mut Vec<T>,
+    ) {
+        let points = self.index().par_iter().with_min_len(PART).map(|&i| value(i));
+        points.chain([filling; LANES].into_par_iter()).collect_into_vec(column);
+    }
+
+    /// Index of each point: those of particles, then those of copies.
+    pub fn index(&self) -> &[u32] {
+        &self.sort.order
+    }
+
+    /// Bytes in use.
+    pub fn bytes(&self) -> usize {
+        self.sort.bytes() + self.position.as_ref().iter().map(Vec::len).sum::<usize>() * 8
     }
 
     /// Calls `run(first, end)` for each run of sorted points that may lie within `reach` [m] of a point.
@@ -176,7 +275,7 @@ impl<D: Dimension> CellSortedPoints<D> {
 
     #[inline(always)]
     fn runs(&self, [low, high]: [[usize; 3]; 2], mut run: impl FnMut(usize, usize)) {
-        let last = D::COUNT - 1;
+        let (last, start) = (D::COUNT - 1, &self.sort.start);
         let middle = if D::COUNT == 3 { low[1]..=high[1] } else { 0..=0 };
         for x in low[0]..=high[0] {
             for y in middle.clone() {
@@ -184,7 +283,7 @@ impl<D: Dimension> CellSortedPoints<D> {
                 from[last] = low[last];
                 let mut to = [x, y, 0];
                 to[last] = high[last];
-                let (first, end) = (self.start[self.grid.number(from)], self.start[self.grid.number(to) + 1]);
+                let (first, end) = (start[self.grid.number(from)], start[self.grid.number(to) + 1]);
                 run(first as usize, end as usize);
             }
         }
@@ -211,6 +310,26 @@ impl<D: Dimension> CellSortedPoints<D> {
         self.runs(cells, |first, end| {
             vicinity.eights.extend((first..end).step_by(LANES).map(|p| (p as u32, (end - p) as u32)));
         });
+    }
+}
+
+/// Memory for sorted points and columns of theirs. It is kept from one search to the next: a machine takes longer to hand out
+/// new memory than to fill it.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace<D: Dimension> {
+    /// The sorted points.
+    pub points: CellSortedPoints<D>,
+    /// Columns of the sorted points.
+    pub numbers: [Vec<f64>; 3],
+    /// A column of the sorted points.
+    pub records: Vec<u32>,
+}
+
+impl<D: Dimension> Workspace<D> {
+    /// Bytes in use.
+    pub fn bytes(&self) -> usize {
+        let numbers: usize = self.numbers.iter().map(Vec::len).sum();
+        self.points.bytes() + numbers * 8 + self.records.len() * 4
     }
 }
 

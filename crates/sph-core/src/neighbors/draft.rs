@@ -96,6 +96,7 @@ pub(super) struct Draft {
     places: Vec<u16>,
     /// For each slot that lists pairs once: where `places` has the neighbors.
     met: Vec<[u32; LANES]>,
+    targets: Vec<[u16; LANES]>,
 }
 
 impl Draft {
@@ -111,6 +112,7 @@ impl Draft {
             seen: Vec::new(),
             places: Vec::new(),
             met: Vec::new(),
+            targets: Vec::new(),
         }
     }
 
@@ -152,9 +154,9 @@ impl Draft {
         copy(&mut lists.start, &self.start);
         copy(&mut lists.once, &self.once);
         copy(&mut lists.slots, &self.slots);
-        lists.targets.clear();
-        lists.targets.reserve_exact(self.met.len());
-        lists.targets.extend(self.met.iter().map(|at| at.map(|at| self.places[at as usize])));
+        self.targets.clear();
+        self.targets.extend(self.met.iter().map(|at| at.map(|at| self.places[at as usize])));
+        copy(&mut lists.targets, &self.targets);
         self.clear();
     }
 
@@ -211,9 +213,11 @@ fn push_slots(slots: &mut Vec<[u32; LANES]>, first_particle: usize, lists: &mut 
     slots.extend((0..longest).map(|k| std::array::from_fn(|l| lists[l][k])));
 }
 
-/// A copy that takes no more memory than it needs.
+/// A copy that takes little more memory than it needs; a rebuild finds room there for a few more.
 fn copy<T: Copy>(target: &mut Vec<T>, source: &[T]) {
     target.clear();
-    target.reserve_exact(source.len());
+    if target.capacity() < source.len() {
+        target.reserve_exact(source.len() + source.len() / 16);
+    }
     target.extend_from_slice(source);
 }

@@ -92,12 +92,6 @@ impl<D: Dimension> Halo<D> {
             }
         });
     }
-
-    /// Positions of the particles and then of the copies, along one axis [m].
-    pub fn extended_position(&self, position: &D::AxisColumns, axis: usize) -> Vec<f64> {
-        let copies = self.owner.iter().zip(&self.shift).map(|(o, s)| position[axis][*o as usize] + s[axis]);
-        position[axis].iter().copied().chain(copies).collect()
-    }
 }
 
 #[cfg(test)]

@@ -22,10 +22,10 @@ mod tile_lists;
 
 use rayon::prelude::*;
 
-use crate::dimension::{Components, Dimension};
+use crate::dimension::Dimension;
 use crate::domain::Domain;
 use crate::lanes::LANES;
-use cell_grid::CellSortedPoints;
+use cell_grid::Workspace;
 use draft::Draft;
 pub use halo::Halo;
 use motion::Motion;
@@ -42,6 +42,7 @@ pub const TILE: usize = TILE_BLOCKS * LANES;
 pub struct NeighborLists<D: Dimension> {
     n_particles: usize,
     halo: Halo<D>,
+    workspace: Workspace<D>,
     tiles: Vec<TileLists>,
     /// Positions when the lists were built.
     reference: Vec<Vec<f64>>,
@@ -71,16 +72,15 @@ impl<D: Dimension> NeighborLists<D> {
         let largest = size.iter().fold(0.0_f64, |a, &b| a.max(b));
         let farthest = 2.0 * reach.factor * largest + reach.skin;
         self.halo = Halo::<D>::build(position, domain, farthest);
-        let all: D::AxisColumns = Components::from_fn(|a| self.halo.extended_position(position, a));
-        let points = CellSortedPoints::<D>::new(&all, farthest.max(f64::MIN_POSITIVE));
-        let search = Search::new(&points, position, &self.halo, size, reach, farthest);
+        let search = Search::new(&mut self.workspace, position, &self.halo, size, reach, farthest);
         let n_tiles = size.len().div_ceil(TILE);
         self.tiles.resize_with(n_tiles, TileLists::default);
         let tiles = self.tiles.par_iter_mut().enumerate();
         tiles.for_each_init(|| Draft::new(n_tiles), |draft, (t, lists)| search.tile(t, draft, lists));
         tile_lists::connect(&mut self.tiles);
-        self.reference = position.as_ref().to_vec();
-        self.motion = Motion::since(position, domain, farthest, reach.skin);
+        self.reference.resize_with(D::COUNT, Vec::new);
+        (0..D::COUNT).for_each(|a| self.reference[a].clone_from(&position[a]));
+        self.motion.restart(position, domain, farthest, reach.skin);
     }
 
     /// Number of particles.
@@ -91,6 +91,11 @@ impl<D: Dimension> NeighborLists<D> {
     /// Copies across periodic boundaries; copy h has index `n_padded() + h`.
     pub fn halo(&self) -> &Halo<D> {
         &self.halo
+    }
+
+    /// Memory that only a rebuild needs, for other sums over sorted particles to use in between.
+    pub fn workspace_mut(&mut self) -> &mut Workspace<D> {
+        &mut self.workspace
     }
 
     /// The lists, tile by tile.
@@ -140,6 +145,7 @@ impl<D: Dimension> NeighborLists<D> {
         self.tiles.iter().map(TileLists::bytes).sum::<usize>()
             + halo
             + self.n_particles * 8 * D::COUNT
+            + self.workspace.bytes()
             + self.motion.bytes()
     }
 

@@ -17,7 +17,7 @@
 
 use rayon::prelude::*;
 
-use super::cell_grid::counting_sort;
+use super::cell_grid::{self, CountingSort};
 use crate::dimension::{Components, Dimension, Vector};
 use crate::domain::Domain;
 
@@ -39,9 +39,7 @@ pub(super) struct Motion<D: Dimension> {
     count: [usize; 3],
     periodic: [bool; 3],
     /// Particles, cell by cell.
-    order: Vec<u32>,
-    /// First particle of every cell, and the end of the last.
-    start: Vec<u32>,
+    sort: CountingSort,
     /// Longest range of displacements in windows of two and of three cells along each axis, and of all particles [m].
     allowed: [f64; 3],
     /// Of each cell, when last looked at.
@@ -50,7 +48,7 @@ pub(super) struct Motion<D: Dimension> {
 
 impl<D: Dimension> Motion<D> {
     /// Sorts particles (inside the box on periodic axes) whose lists reach to `farthest` [m] at most, skin included.
-    pub fn since(position: &D::AxisColumns, domain: &Domain<D>, farthest: f64, skin: f64) -> Self {
+    pub fn restart(&mut self, position: &D::AxisColumns, domain: &Domain<D>, farthest: f64, skin: f64) {
         let n = position[0].len();
         let mut width = (WIDTH * farthest).max(f64::MIN_POSITIVE);
         let bounds: [(f64, f64); 3] = std::array::from_fn(|a| bounds(position, domain, a));
@@ -65,28 +63,27 @@ impl<D: Dimension> Motion<D> {
         });
         let cell = |i: usize| {
             (0..D::COUNT).fold(0, |number, a| {
-                let along = ((position[a][i] - bounds[a].0) * inverse[a]) as usize;
+                let along = ((position[a][i] - bounds[a].0) * inverse[a]) as u32 as usize;
                 number * count[a] + along.min(count[a] - 1)
             })
         };
-        let keys: Vec<u32> = (0..n).into_par_iter().map(|i| cell(i) as u32).collect();
-        let (order, start) = counting_sort(&keys, count.iter().product());
+        self.sort.sort(n, count.iter().product(), |i| cell(i) as u32);
         let support = farthest - skin;
-        let periodic = std::array::from_fn(|a| a < D::COUNT && domain.periodic[a]);
-        let allowed = [skin, width - support, 2.0 * width - support];
-        let ranges = vec![nowhere::<D>(); start.len() - 1];
-        Self { count, periodic, order, start, allowed, ranges }
+        self.count = count;
+        self.periodic = std::array::from_fn(|a| a < D::COUNT && domain.periodic[a]);
+        self.allowed = [skin, width - support, 2.0 * width - support];
+        self.ranges.resize(count.iter().product(), nowhere::<D>());
     }
 
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
-        (self.order.len() + self.start.len()) * 4 + self.ranges.len() * size_of::<Range<D>>()
+        self.sort.bytes() + self.ranges.len() * size_of::<Range<D>>()
     }
 
     /// How far particles have moved against each other from the positions `then` to those `now`, as a share of what the
     /// lists allow: above 1 they no longer hold.
     pub fn share(&mut self, then: &[Vec<f64>], now: &D::AxisColumns) -> f64 {
-        let (order, start) = (&self.order, &self.start);
+        let (order, start) = (&self.sort.order, &self.sort.start);
         self.ranges.par_iter_mut().with_min_len(256).enumerate().for_each(|(c, range)| {
             let members = &order[start[c] as usize..start[c + 1] as usize];
             *range = range_of::<D>(members, then, now);
@@ -163,7 +160,8 @@ fn bounds<D: Dimension>(position: &D::AxisColumns, domain: &Domain<D>, axis: usi
     if domain.periodic[axis] {
         return (domain.lower[axis], domain.upper[axis]);
     }
-    position[axis].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), &x| (l.min(x), u.max(x)))
+    let [low, high] = cell_grid::bounds(&position[axis]);
+    (low, high)
 }
 
 /// Number of cells at least `width` [m] wide along each axis.

@@ -10,26 +10,9 @@
 
 use crate::dimension::Dimension;
 use crate::lanes::{LANES, LaneKernel, Lanes, dispatch};
-use crate::neighbors::cell_grid::CellSortedPoints;
+use crate::neighbors::cell_grid::{CellSortedPoints, Workspace};
 use crate::neighbors::draft::{Draft, Near, Row};
 use crate::neighbors::{Halo, Reach, TILE, TileLists};
-
-/// What the search of one tile reads.
-pub(super) struct Search<'a, D: Dimension> {
-    points: &'a CellSortedPoints<D>,
-    position: &'a D::AxisColumns,
-    halo: &'a Halo<D>,
-    size: &'a [f64],
-    reach: Reach,
-    farthest: f64,
-    /// Sizes of the sorted points, filled up by whole lanes.
-    size_of: Vec<f64>,
-    /// Place along the skew line of the particle that each sorted point shows, and the shift of the point along the line [m].
-    along_of: Vec<f64>,
-    shift_of: Vec<f64>,
-    /// Record of each sorted point.
-    record_of: Vec<u32>,
-}
 
 /// Direction of the line that decides who owns a pair: no two points of a lattice near each other lie across it.
 const SKEW: [f64; 3] = [1.0, 0.3, 0.09];
@@ -40,23 +23,43 @@ fn along<D: Dimension>(coordinate: impl Fn(usize) -> f64) -> f64 {
     (0..D::COUNT).map(|a| SKEW[a] * coordinate(a)).sum()
 }
 
+/// What the search of one tile reads.
+pub(super) struct Search<'a, D: Dimension> {
+    points: &'a CellSortedPoints<D>,
+    position: &'a D::AxisColumns,
+    halo: &'a Halo<D>,
+    size: &'a [f64],
+    reach: Reach,
+    farthest: f64,
+    /// Sizes of the sorted points, filled up by whole lanes.
+    size_of: &'a [f64],
+    /// Place along the skew line of the particle that each sorted point shows, and the shift of the point along the line [m].
+    along_of: &'a [f64],
+    shift_of: &'a [f64],
+    /// Record of each sorted point.
+    record_of: &'a [u32],
+}
+
 impl<'a, D: Dimension> Search<'a, D> {
+    /// Sorts particles and their copies for a search that reaches to `farthest` [m].
     pub fn new(
-        points: &'a CellSortedPoints<D>,
+        workspace: &'a mut Workspace<D>,
         position: &'a D::AxisColumns,
         halo: &'a Halo<D>,
         size: &'a [f64],
         reach: Reach,
         farthest: f64,
     ) -> Self {
+        let Workspace { points, numbers: [size_of, along_of, shift_of], records: record_of } = workspace;
+        points.sort(position, halo, farthest.max(f64::MIN_POSITIVE));
         let n = size.len();
         let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
         let shift = |i: u32| (i as usize).checked_sub(n).map_or(0.0, |c| along::<D>(|a| halo.shift[c][a]));
         let filling = (n.next_multiple_of(LANES) - n) as u32;
-        let size_of = points.column(|i| size[owner(i)], 0.0);
-        let along_of = points.column(|i| along::<D>(|a| position[a][owner(i)]), 0.0);
-        let shift_of = points.column(shift, 0.0);
-        let record_of = points.column(|i| if (i as usize) < n { i } else { i + filling }, 0);
+        points.column(|i| size[owner(i)], 0.0, size_of);
+        points.column(|i| along::<D>(|a| position[a][owner(i)]), 0.0, along_of);
+        points.column(shift, 0.0, shift_of);
+        points.column(|i| if (i as usize) < n { i } else { i + filling }, 0, record_of);
         Self { points, position, halo, size, reach, farthest, size_of, along_of, shift_of, record_of }
     }
 
@@ -90,7 +93,7 @@ impl<'a, D: Dimension> Search<'a, D> {
                 let d = eight::<L>(&self.points.position[a], p) - L::splat(here[a]);
                 r2 = d.mul_add(d, r2);
             }
-            let reach = factor * (own + eight::<L>(&self.size_of, p));
+            let reach = factor * (own + eight::<L>(self.size_of, p));
             let cut = reach + width;
             let of_run = if count < LANES as u32 { (1u8 << count) - 1 } else { u8::MAX };
             let mut listed = r2.less_mask(cut * cut) & of_run;
@@ -98,7 +101,7 @@ impl<'a, D: Dimension> Search<'a, D> {
                 continue;
             }
             let within = r2.less_mask(reach * reach);
-            let difference = (eight::<L>(&self.along_of, p) - line) + eight::<L>(&self.shift_of, p);
+            let difference = (eight::<L>(self.along_of, p) - line) + eight::<L>(self.shift_of, p);
             let mut owns = L::zero().less_mask(difference);
             let ties = !owns & !difference.less_mask(L::zero()) & listed;
             // Most ties are the particle itself: found without a branch.
@@ -127,7 +130,7 @@ impl<'a, D: Dimension> Search<'a, D> {
         let (mut owns, mut itself) = (0, 0);
         for lane in (0..LANES).filter(|lane| ties >> lane & 1 == 1) {
             owns |= u8::from(self.owns_tied(i, p + lane)) << lane;
-            itself |= u8::from(self.points.index[p + lane] as usize == i) << lane;
+            itself |= u8::from(self.points.index()[p + lane] as usize == i) << lane;
         }
         (owns, itself)
     }
@@ -138,7 +141,8 @@ impl<'a, D: Dimension> Search<'a, D> {
             return owner > i;
         }
         // An image of the particle itself.
-        let shift = (self.points.index[p] as usize).checked_sub(self.size.len()).map(|c| self.halo.shift[c]);
+        let shift =
+            (self.points.index()[p] as usize).checked_sub(self.size.len()).map(|c| self.halo.shift[c]);
         shift.is_some_and(|s| (0..D::COUNT).find(|&a| s[a] != 0.0).is_some_and(|a| s[a] > 0.0))
     }
 }

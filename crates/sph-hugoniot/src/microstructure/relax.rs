@@ -19,7 +19,7 @@ use rand_pcg::Pcg64;
 use sph_core::kernel::KernelFamily;
 use sph_core::neighbors::Halo;
 use sph_core::neighbors::cell_grid::CellSortedPoints;
-use sph_core::{Components, Dim2, Domain};
+use sph_core::{Dim2, Domain};
 
 use super::layout::{Fill, Layout};
 use crate::config::case::Medium;
@@ -109,8 +109,7 @@ impl Cloud {
             [wrapped.iter().map(|p| p.x).collect(), wrapped.iter().map(|p| p.y).collect()];
         let reach = reach * self.size;
         let halo = Halo::<Dim2>::build(&position, &domain, reach);
-        let all: [Vec<f64>; 2] = Components::from_fn(|a| halo.extended_position(&position, a));
-        let sorted = CellSortedPoints::<Dim2>::new(&all, 0.5 * reach);
+        let sorted = CellSortedPoints::<Dim2>::new(&position, &halo, 0.5 * reach);
         let sum = |point: &DVec2| {
             let mut sum = zero;
             sorted.runs_near(*point, reach, |first, end| {

@@ -178,6 +178,8 @@ impl<D: Dimension> VolumeSum<'_, D> {
         let (mut totals, mut near_imposed) = ([L::zero(); GROUP], [false; GROUP]);
         let mut inverse = [0.0; GROUP];
         group.clone().zip(&mut inverse).for_each(|(p, inverse)| *inverse = 1.0 / self.smoothing[p]);
+        let mut reach2 = [0.0; GROUP];
+        group.clone().zip(&mut reach2).for_each(|(p, r)| *r = self.reach(p) * self.reach(p) * (1.0 + 1e-12));
         for &(first, count) in &vicinity.eights {
             let eight = first as usize..first as usize + LANES;
             let load = |column: &[f64]| {
@@ -191,6 +193,9 @@ impl<D: Dimension> VolumeSum<'_, D> {
                 for a in 0..D::COUNT {
                     let d = at[a] - L::splat(self.points.position[a][p]);
                     r2 = d.mul_add(d, r2);
+                }
+                if r2.less_mask(L::splat(reach2[k])) == 0 {
+                    continue;
                 }
                 let q = r2.sqrt() * L::splat(inverse[k]);
                 totals[k] = volume.mul_add(KERNEL.value(q), totals[k]);

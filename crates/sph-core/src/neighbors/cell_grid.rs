@@ -348,3 +348,37 @@ impl Default for Vicinity {
         Self { cells: (usize::MAX, 0), eights: Vec::new() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_number_of_threads_sorts_the_same_and_keeps_the_order_of_equals() {
+        let key = |i: usize| (i * 7919 % 1009 % 37) as u32;
+        for (count, n_keys) in [(0, 1), (1, 40), (5000, 37)] {
+            let mut expected: Vec<u32> = (0..count as u32).collect();
+            expected.sort_by_key(|&i| key(i as usize));
+            for threads in [1, 2, 5, 64] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let mut sort = CountingSort::default();
+                pool.install(|| sort.sort(count, n_keys, key));
+                assert_eq!(sort.order, expected, "{count} indices, {threads} threads");
+                let first =
+                    |k: usize| expected.iter().filter(|&&i| (key(i as usize) as usize) < k).count() as u32;
+                let start: Vec<u32> = (0..=n_keys).map(first).collect();
+                assert_eq!(sort.start, start, "{count} indices, {threads} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn bounds_leave_out_what_is_not_a_number() {
+        let mut numbers: Vec<f64> = (0..100).map(|i| ((i * 37) % 101) as f64 - 50.0).collect();
+        numbers[3] = f64::NAN;
+        let least = numbers.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let largest = numbers.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+        assert_eq!(bounds(&numbers), [least, largest]);
+        assert_eq!(bounds(&[]), [f64::INFINITY, f64::NEG_INFINITY]);
+    }
+}

@@ -10,7 +10,7 @@ use crate::dimension::Dimension;
 use crate::domain::Domain;
 use crate::lanes::{Line, prefetch};
 
-/// Copies that one thread refreshes in one go.
+/// Particles or copies that one thread looks at in one go.
 const PART: usize = 1024;
 /// Copies by which an owner is asked for before it is read.
 const AHEAD: usize = 16;
@@ -41,25 +41,34 @@ impl<D: Dimension> Halo<D> {
         let n = position[axis].len();
         // A short period shows a particle more than once.
         let turns = (reach / period).ceil() as i64 + 1;
-        for source in 0..n + self.owner.len() {
-            let (owner, shift) = if source < n {
-                (source as u32, D::Vector::default())
-            } else {
-                (self.owner[source - n], self.shift[source - n])
-            };
-            let x = position[axis][owner as usize];
-            if x - period <= lower && x + period >= upper {
-                continue; // Too far from both sides: most are.
-            }
-            for turn in (-turns..=turns).filter(|&turn| turn != 0) {
-                let image = x + turn as f64 * period;
-                if image > lower && image < upper {
-                    let mut shift = shift;
-                    shift[axis] = turn as f64 * period;
-                    self.owner.push(owner);
-                    self.shift.push(shift);
+        let of_source = |source: usize| match source.checked_sub(n) {
+            None => (source as u32, D::Vector::default()),
+            Some(copy) => (self.owner[copy], self.shift[copy]),
+        };
+        let images = |part: usize| {
+            let mut images = Vec::new();
+            for source in part * PART..((part + 1) * PART).min(n + self.owner.len()) {
+                let (owner, shift) = of_source(source);
+                let x = position[axis][owner as usize];
+                if x - period <= lower && x + period >= upper {
+                    continue; // Too far from both sides: most are.
+                }
+                for turn in (-turns..=turns).filter(|&turn| turn != 0) {
+                    let image = x + turn as f64 * period;
+                    if image > lower && image < upper {
+                        let mut shift = shift;
+                        shift[axis] = turn as f64 * period;
+                        images.push((owner, shift));
+                    }
                 }
             }
+            images
+        };
+        let parts = (n + self.owner.len()).div_ceil(PART);
+        let images: Vec<Vec<(u32, D::Vector)>> = (0..parts).into_par_iter().map(images).collect();
+        for (owner, shift) in images.into_iter().flatten() {
+            self.owner.push(owner);
+            self.shift.push(shift);
         }
     }
 

@@ -33,6 +33,7 @@ use sph_core::domain::Domain;
 use sph_core::geometry::{Lattice, lattice_volume_sum};
 use sph_core::kernel::KernelFamily;
 use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, dispatch_with};
+use sph_core::memory::resize_scratch;
 use sph_core::neighbors::cell_grid::{CellSortedPoints, Vicinity, Workspace};
 use sph_core::neighbors::{Halo, TILE};
 use sph_core::particles::{Constraint, Particles};
@@ -97,11 +98,11 @@ fn sum<D: Dimension>(
     points.column(|i| width * particles.size[owner(i)], 1.0, smoothing);
     let mut imposed = Vec::new();
     points.column(|i| particles.constraint[owner(i)] != Constraint::Free, false, &mut imposed);
-    place_of.resize(n, 0);
+    resize_scratch(place_of, n, 0);
     for (p, &i) in points.index().iter().enumerate().filter(|(_, i)| (**i as usize) < n) {
         place_of[i as usize] = p as u32;
     }
-    sums.resize(points.index().len(), 0.0);
+    resize_scratch(sums, points.index().len(), 0.0);
     let sum = &VolumeSum { points: &*points, n_particles: n, volume, imposed: &imposed, smoothing };
     sums.par_chunks_mut(PART).enumerate().for_each_init(Vicinity::default, |vicinity, (part, sums)| {
         dispatch_with(instructions, VolumeSumPart { sum, first: part * PART, sums, vicinity });

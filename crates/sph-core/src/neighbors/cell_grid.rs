@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::dimension::{Components, Dimension};
 use crate::domain::Domain;
 use crate::lanes::LANES;
+use crate::memory::resize_scratch;
 use crate::neighbors::Halo;
 use crate::particles::Particles;
 
@@ -130,6 +131,8 @@ impl CountingSort {
     /// every thread reads all keys, but none writes where another does.
     pub fn sort(&mut self, count: usize, n_keys: usize, key: impl Fn(usize) -> u32 + Send + Sync) {
         let Self { keys, order, start } = self;
+        resize_scratch(keys, count, 0);
+        resize_scratch(order, count, 0);
         (0..count).into_par_iter().with_min_len(PART).map(key).collect_into_vec(keys);
         let keys = keys.as_slice();
         let span = n_keys.div_ceil(rayon::current_num_threads()).max(1);
@@ -146,7 +149,6 @@ impl CountingSort {
         for k in 2..start.len() {
             start[k] += start[k - 1];
         }
-        order.resize(count, 0);
         let ends = (1..=n_keys.div_ceil(span)).map(|range| start[1 + (range * span).min(n_keys)] as usize);
         let (mut rest, mut first) = (order.as_mut_slice(), 0);
         let split = |end: usize| {
@@ -247,6 +249,7 @@ impl<D: Dimension> CellSortedPoints<D> {
         filling: T,
         column: &mut Vec<T>,
     ) {
+        resize_scratch(column, self.index().len() + LANES, filling);
         let points = self.index().par_iter().with_min_len(PART).map(|&i| value(i));
         points.chain([filling; LANES].into_par_iter()).collect_into_vec(column);
     }

@@ -73,4 +73,21 @@ mod tests {
         let d = domain.displacement(DVec2::new(-0.9, 0.0), DVec2::new(0.9, 2.9));
         assert!((d - DVec2::new(-0.2, 2.9)).length() < 1e-15);
     }
+
+    #[test]
+    fn the_way_around_the_division_changes_no_bit() {
+        let (lower, upper) = (DVec2::new(-0.3, 0.1), DVec2::new(0.7, 0.4));
+        let domain = Domain::<Dim2>::new(lower, upper, [true, true]);
+        for a in 0..2 {
+            let (lower, upper, period) = (lower[a], upper[a], upper[a] - lower[a]);
+            let divided = |x: f64| {
+                let moved = x - period * ((x - lower) / period).floor();
+                if moved >= upper { lower } else { moved }
+            };
+            let bounds = [lower, upper].into_iter().flat_map(|x| [x.next_down(), x, x.next_up()]);
+            for x in bounds.chain((-40..40).map(|k| 0.037 * k as f64)).chain([-0.0, 1e-300, -1e-300]) {
+                assert_eq!(domain.wrap(a, x).to_bits(), divided(x).to_bits(), "{x} along axis {a}");
+            }
+        }
+    }
 }

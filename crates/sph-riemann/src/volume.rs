@@ -91,7 +91,7 @@ fn sum<D: Dimension>(
     let own: D::AxisColumns = Components::from_fn(inside);
     let halo = Halo::<D>::build(&own, domain, reach);
     let Workspace { points, numbers: [volume, smoothing, sums], records: place_of } = workspace;
-    points.sort(&own, &halo, 0.5 * reach);
+    points.sort(&own, &halo, 0.5 * reach, place_of);
     let n = particles.len();
     let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
     points.column(|i| particles.mass[owner(i)] / particles.density[owner(i)], 0.0, volume);

@@ -116,10 +116,9 @@ pub(crate) fn bounds(numbers: &[f64]) -> [f64; 2] {
 /// Numbers that one thread looks at in one go.
 const PART: usize = 1 << 14;
 
-/// Indices sorted by key, with the buffers that sorting needs.
+/// Indices sorted by key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CountingSort {
-    keys: Vec<u32>,
     /// Indices by key; in their order where keys are equal.
     pub order: Vec<u32>,
     /// First place of every key, and the end of the last.
@@ -128,9 +127,15 @@ pub(crate) struct CountingSort {
 
 impl CountingSort {
     /// Sorts the indices below `count`, whose keys are below `n_keys`. Each thread sorts what has keys in its own range:
-    /// every thread reads all keys, but none writes where another does.
-    pub fn sort(&mut self, count: usize, n_keys: usize, key: impl Fn(usize) -> u32 + Send + Sync) {
-        let Self { keys, order, start } = self;
+    /// every thread reads all keys, but none writes where another does. `keys` is memory for them.
+    pub fn sort(
+        &mut self,
+        count: usize,
+        n_keys: usize,
+        key: impl Fn(usize) -> u32 + Send + Sync,
+        keys: &mut Vec<u32>,
+    ) {
+        let Self { order, start } = self;
         resize_scratch(keys, count, 0);
         resize_scratch(order, count, 0);
         (0..count).into_par_iter().with_min_len(PART).map(key).collect_into_vec(keys);
@@ -173,7 +178,7 @@ impl CountingSort {
 
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
-        (self.keys.len() + self.order.len() + self.start.len()) * 4
+        (self.order.len() + self.start.len()) * 4
     }
 }
 
@@ -187,7 +192,7 @@ pub fn sort_particles<D: Dimension>(particles: &mut Particles<D>, domain: &Domai
     let grid = CellGrid::<D>::between(Components::from_fn(|a| bounds(&position[a])), width);
     let mut sort = CountingSort::default();
     let key = |i: usize| grid.strip_rank(grid.coordinates(|a| position[a][i])) as u32;
-    sort.sort(particles.len(), grid.strip_ranks(), key);
+    sort.sort(particles.len(), grid.strip_ranks(), key, &mut Vec::new());
     if sort.order.iter().enumerate().any(|(k, &i)| k as u32 != i) {
         particles.gather(&sort.order);
     }
@@ -214,12 +219,12 @@ impl<D: Dimension> CellSortedPoints<D> {
     /// Sorts particles and their copies into cells at least `width` [m] wide.
     pub fn new(position: &D::AxisColumns, halo: &Halo<D>, width: f64) -> Self {
         let mut points = Self::default();
-        points.sort(position, halo, width);
+        points.sort(position, halo, width, &mut Vec::new());
         points
     }
 
-    /// Sorts anew, in the memory that there is.
-    pub fn sort(&mut self, position: &D::AxisColumns, halo: &Halo<D>, width: f64) {
+    /// Sorts anew, in the memory that there is; `keys` is more of it.
+    pub fn sort(&mut self, position: &D::AxisColumns, halo: &Halo<D>, width: f64, keys: &mut Vec<u32>) {
         let n = position[0].len();
         let coordinate = |i: usize, a: usize| match i.checked_sub(n) {
             None => position[a][i],
@@ -232,7 +237,7 @@ impl<D: Dimension> CellSortedPoints<D> {
         };
         let grid = CellGrid::<D>::between(Components::from_fn(all_bounds), width);
         let key = |i: usize| grid.number(grid.coordinates(|a| coordinate(i, a))) as u32;
-        self.sort.sort(n + halo.len(), grid.len(), key);
+        self.sort.sort(n + halo.len(), grid.len(), key, keys);
         self.grid = grid;
         for a in 0..D::COUNT {
             let mut column = std::mem::take(&mut self.position[a]);
@@ -324,7 +329,7 @@ pub struct Workspace<D: Dimension> {
     pub points: CellSortedPoints<D>,
     /// Columns of the sorted points.
     pub numbers: [Vec<f64>; 3],
-    /// A column of the sorted points.
+    /// A column of the sorted points; before that, the keys that they are sorted by.
     pub records: Vec<u32>,
 }
 
@@ -365,7 +370,7 @@ mod tests {
             for threads in [1, 2, 5, 64] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let mut sort = CountingSort::default();
-                pool.install(|| sort.sort(count, n_keys, key));
+                pool.install(|| sort.sort(count, n_keys, key, &mut Vec::new()));
                 assert_eq!(sort.order, expected, "{count} indices, {threads} threads");
                 let first =
                     |k: usize| expected.iter().filter(|&&i| (key(i as usize) as usize) < k).count() as u32;

@@ -80,7 +80,7 @@ impl<D: Dimension> NeighborLists<D> {
         tile_lists::connect(&mut self.tiles);
         self.reference.resize_with(D::COUNT, Vec::new);
         (0..D::COUNT).for_each(|a| self.reference[a].clone_from(&position[a]));
-        self.motion.restart(position, domain, farthest, reach.skin);
+        self.motion.restart(position, domain, (farthest, reach.skin), &mut self.workspace.records);
     }
 
     /// Number of particles.

@@ -47,8 +47,15 @@ pub(super) struct Motion<D: Dimension> {
 }
 
 impl<D: Dimension> Motion<D> {
-    /// Sorts particles (inside the box on periodic axes) whose lists reach to `farthest` [m] at most, skin included.
-    pub fn restart(&mut self, position: &D::AxisColumns, domain: &Domain<D>, farthest: f64, skin: f64) {
+    /// Sorts particles (inside the box on periodic axes) whose lists reach to `farthest` [m] at most, skin included; `keys` is
+    /// memory that sorting needs.
+    pub fn restart(
+        &mut self,
+        position: &D::AxisColumns,
+        domain: &Domain<D>,
+        (farthest, skin): (f64, f64),
+        keys: &mut Vec<u32>,
+    ) {
         let n = position[0].len();
         let mut width = (WIDTH * farthest).max(f64::MIN_POSITIVE);
         let bounds: [(f64, f64); 3] = std::array::from_fn(|a| bounds(position, domain, a));
@@ -67,7 +74,7 @@ impl<D: Dimension> Motion<D> {
                 number * count[a] + along.min(count[a] - 1)
             })
         };
-        self.sort.sort(n, count.iter().product(), |i| cell(i) as u32);
+        self.sort.sort(n, count.iter().product(), |i| cell(i) as u32, keys);
         let support = farthest - skin;
         self.count = count;
         self.periodic = std::array::from_fn(|a| a < D::COUNT && domain.periodic[a]);

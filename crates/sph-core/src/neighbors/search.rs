@@ -51,7 +51,7 @@ impl<'a, D: Dimension> Search<'a, D> {
         farthest: f64,
     ) -> Self {
         let Workspace { points, numbers: [size_of, along_of, shift_of], records: record_of } = workspace;
-        points.sort(position, halo, farthest.max(f64::MIN_POSITIVE));
+        points.sort(position, halo, farthest.max(f64::MIN_POSITIVE), record_of);
         let n = size.len();
         let owner = |i: u32| if (i as usize) < n { i as usize } else { halo.owner[i as usize - n] as usize };
         let shift = |i: u32| (i as usize).checked_sub(n).map_or(0.0, |c| along::<D>(|a| halo.shift[c][a]));

@@ -204,7 +204,7 @@ pub struct CellSortedPoints<D: Dimension> {
     grid: CellGrid<D>,
     /// The points by cell: indices of particles, then those of copies.
     sort: CountingSort,
-    /// Coordinates of each point, sorted, and of as many as eight behind them that are [`FAR`] from all [m].
+    /// Coordinates of each point, sorted, and of as many as eight behind them that are far from all [m].
     pub position: D::AxisColumns,
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 /// Stages of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepStage {
-    /// Sorting particles and building neighbor lists.
+    /// Sorting particles, building neighbor lists, and finding how long they still hold.
     Lists,
     /// Volume sums.
     Volume,

@@ -113,12 +113,13 @@ impl<D: SolidDimension> Simulation<D> {
     /// Whether the lists still hold, and volume sums anew where particles have moved by a further share of the skin against
     /// each other: how closely a density follows its packing must not hang on how long lists live.
     fn look_at_motion(&mut self) {
+        let mut clock = Instant::now();
         let before =
             std::mem::replace(&mut self.motion_share, self.lists.motion_share(&self.particles.position));
+        self.stage_times.add(StepStage::Lists, &mut clock);
         self.lists_valid = self.motion_share <= 1.0;
         let part = |share: f64| (share * MEASURES_A_SKIN).floor();
         if self.lists_valid && part(self.motion_share) > part(before) {
-            let mut clock = Instant::now();
             self.measure_volumes();
             self.stage_times.add(StepStage::Volume, &mut clock);
         }

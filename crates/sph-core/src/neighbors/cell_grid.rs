@@ -71,21 +71,23 @@ impl<D: Dimension> CellGrid<D> {
     fn number(&self, at: [usize; 3]) -> usize {
         (at[0] * self.count[1] + at[1]) * self.count[2] + at[2]
     }
+}
 
-    /// Place of a cell along the strips: strips of [`STRIP`] cells run along the first axis; within a strip, cells across
-    /// it follow each other.
-    fn strip_rank(&self, at: [usize; 3]) -> usize {
-        let strips = |a: usize| self.count[a].div_ceil(STRIP);
-        let (sy, sz) = (at[1] / STRIP, at[2] / STRIP);
-        let wide = |a: usize| self.count[a].min(STRIP);
-        let strip = sz * strips(1) + sy;
-        ((strip * self.count[0] + at[0]) * wide(1) + at[1] % STRIP) * wide(2) + at[2] % STRIP
-    }
+/// Place of a cell along the strips of a grid with `count` cells along each axis: strips of [`STRIP`] cells run along the
+/// first axis; within a strip, cells across it follow each other.
+#[inline]
+pub(super) fn strip_rank(at: [usize; 3], count: [usize; 3]) -> usize {
+    let strips = |a: usize| count[a].div_ceil(STRIP);
+    let (sy, sz) = (at[1] / STRIP, at[2] / STRIP);
+    let wide = |a: usize| count[a].min(STRIP);
+    let strip = sz * strips(1) + sy;
+    ((strip * count[0] + at[0]) * wide(1) + at[1] % STRIP) * wide(2) + at[2] % STRIP
+}
 
-    fn strip_ranks(&self) -> usize {
-        let padded = |a: usize| self.count[a].div_ceil(STRIP) * self.count[a].min(STRIP);
-        self.count[0] * padded(1) * padded(2)
-    }
+/// Number of such places; some have no cell.
+pub(super) fn strip_ranks(count: [usize; 3]) -> usize {
+    let padded = |a: usize| count[a].div_ceil(STRIP) * count[a].min(STRIP);
+    count[0] * padded(1) * padded(2)
 }
 
 /// Least and largest of some numbers; infinite, the other way around, without any.
@@ -191,8 +193,8 @@ pub fn sort_particles<D: Dimension>(particles: &mut Particles<D>, domain: &Domai
     let position = &particles.position;
     let grid = CellGrid::<D>::between(Components::from_fn(|a| bounds(&position[a])), width);
     let mut sort = CountingSort::default();
-    let key = |i: usize| grid.strip_rank(grid.coordinates(|a| position[a][i])) as u32;
-    sort.sort(particles.len(), grid.strip_ranks(), key, &mut Vec::new());
+    let key = |i: usize| strip_rank(grid.coordinates(|a| position[a][i]), grid.count) as u32;
+    sort.sort(particles.len(), strip_ranks(grid.count), key, &mut Vec::new());
     if sort.order.iter().enumerate().any(|(k, &i)| k as u32 != i) {
         particles.gather(&sort.order);
     }

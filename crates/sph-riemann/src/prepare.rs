@@ -73,7 +73,7 @@ impl<D: SolidDimension> LaneKernel for PrepareTile<'_, D> {
         let blocks = records.chunks_exact_mut(LANES * lines).zip(rows.chunks_exact_mut(Row::count::<D>()));
         for (b, (records, rows)) in blocks.enumerate() {
             prefetch(records, AHEAD * LANES * lines, LANES * lines);
-            prefetch(rows, AHEAD * Row::count::<D>(), Row::count::<D>());
+            prefetch(rows, AHEAD * Row::count::<D>(), prepared.rows::<D>());
             let (i, end) = (first + b * LANES, (first + (b + 1) * LANES).min(particles.len()));
             let eight = matter.eight::<L>(
                 &particles.material[i..end],
@@ -138,6 +138,9 @@ impl<'a, D: SolidDimension, L: Lanes> EightStates<'a, D, L> {
         let (pressure, modulus) = matter.pressure_and_bulk_modulus(eight, self.density, self.energy);
         let inverse_density = L::one() / self.density;
         let speed = self.write_rows(eight, inverse_density, (pressure, modulus), rows);
+        if prepared == Prepared::State {
+            self.write_rows_of_pass(eight, modulus, rows);
+        }
         let numbers = self.numbers(inverse_density, pressure);
         let lines = prepared.lines::<D>();
         match prepared {
@@ -169,6 +172,22 @@ impl<'a, D: SolidDimension, L: Lanes> EightStates<'a, D, L> {
         numbers
     }
 
+    /// Rows that only the first pass reads.
+    #[inline(always)]
+    fn write_rows_of_pass(&self, eight: &Eight<'_, L>, modulus: L, rows: &mut [Line]) {
+        let (zero, half, shear) = (L::zero(), L::splat(0.5), eight.numbers.shear_modulus);
+        let (mut free, mut evolves) = (L::one(), L::one());
+        if self.constraint.iter().any(|&c| c != Constraint::Free) {
+            free = lanes_where(self.constraint, |c| c == Constraint::Free);
+            evolves = lanes_where(self.constraint, |c| c != Constraint::Frozen);
+        }
+        let resists = half.select_less(eight.failed_lanes(), zero, shear);
+        half.select_less(evolves, modulus, zero).store(&mut rows[Row::BULK_MODULUS].0);
+        half.select_less(evolves, resists, zero).store(&mut rows[Row::SHEAR_MODULUS].0);
+        eight.numbers.yield_strength.store(&mut rows[Row::YIELD_STRENGTH].0);
+        free.store(&mut rows[Row::FREE].0);
+    }
+
     /// Returns the longitudinal sound speed [m/s].
     #[inline(always)]
     fn write_rows(
@@ -178,19 +197,9 @@ impl<'a, D: SolidDimension, L: Lanes> EightStates<'a, D, L> {
         (pressure, modulus): (L, L),
         rows: &mut [Line],
     ) -> L {
-        let (zero, half, shear) = (L::zero(), L::splat(0.5), eight.numbers.shear_modulus);
-        let (mut free, mut evolves) = (L::one(), L::one());
-        if self.constraint.iter().any(|&c| c != Constraint::Free) {
-            free = lanes_where(self.constraint, |c| c == Constraint::Free);
-            evolves = lanes_where(self.constraint, |c| c != Constraint::Frozen);
-        }
-        let resists = half.select_less(eight.failed_lanes(), zero, shear);
+        let shear = eight.numbers.shear_modulus;
         inverse_density.store(&mut rows[Row::INVERSE_DENSITY].0);
-        half.select_less(evolves, modulus, zero).store(&mut rows[Row::BULK_MODULUS].0);
-        half.select_less(evolves, resists, zero).store(&mut rows[Row::SHEAR_MODULUS].0);
-        eight.numbers.yield_strength.store(&mut rows[Row::YIELD_STRENGTH].0);
         pressure.store(&mut rows[Row::PRESSURE].0);
-        free.store(&mut rows[Row::FREE].0);
         // ρ c_l = sqrt(ρ (K + 4 G/3)).
         let stiffness = L::splat(4.0 / 3.0).mul_add(shear, modulus);
         let impedance = (self.density * stiffness).sqrt();

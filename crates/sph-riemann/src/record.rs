@@ -85,6 +85,15 @@ impl Prepared {
             Self::ConstantSides => D::CONSTANT_SIDES_LINES,
         }
     }
+
+    /// Rows of a block that are used.
+    #[inline(always)]
+    pub fn rows<D: SolidDimension>(self) -> usize {
+        match self {
+            Self::State => Row::count::<D>(),
+            Self::ConstantSides => Row::COUNT_WITHOUT_PASS,
+        }
+    }
 }
 
 /// Offsets in the record of time-centering: that of the second pass, where the impedances of marked particles make room for δ
@@ -134,18 +143,20 @@ impl Row {
     pub const INVERSE_DENSITY: usize = 0;
     /// Pressure P [Pa].
     pub const PRESSURE: usize = 1;
-    /// 1 where the particle moves freely, 0 where its velocity is imposed.
-    pub const FREE: usize = 2;
     /// ρ c_l [kg/(m² s)].
-    pub const LONGITUDINAL: usize = 3;
+    pub const LONGITUDINAL: usize = 2;
     /// ρ c_t [kg/(m² s)], up to the first pass.
-    pub const TRANSVERSE: usize = 4;
+    pub const TRANSVERSE: usize = 3;
+    /// Rows that a scheme without reconstruction uses; those that follow are for the first pass.
+    pub const COUNT_WITHOUT_PASS: usize = 4;
     /// ρ c_b² [Pa], zero where the state is frozen; up to the first pass.
-    pub const BULK_MODULUS: usize = 5;
+    pub const BULK_MODULUS: usize = 4;
     /// Shear modulus G [Pa], zero where the state is frozen or the particle has failed; up to the first pass.
-    pub const SHEAR_MODULUS: usize = 6;
+    pub const SHEAR_MODULUS: usize = 5;
     /// Yield strength Y [Pa], up to the first pass.
-    pub const YIELD_STRENGTH: usize = 7;
+    pub const YIELD_STRENGTH: usize = 6;
+    /// 1 where the particle moves freely, 0 where its velocity is imposed; up to the first pass.
+    pub const FREE: usize = 7;
     /// Rows that the material and the state fill.
     pub const COUNT_BEFORE: usize = 8;
     /// Least eigenvalue of L [-], from the first pass on.

@@ -38,7 +38,7 @@ impl<D: SolidDimension> UpdateTile<'_, D> {
     fn prefetch(&self, rows: &[Line], k: usize) {
         let (i, context, columns) = (self.first + k, &self.context, &self.columns);
         let block = k / LANES * Row::count::<D>();
-        prefetch(rows, block, Row::count::<D>());
+        prefetch(rows, block, context.settings.scheme.prepared().rows::<D>());
         if context.settings.scheme.reconstructs() {
             let of_correction = Sides::correction::<D>() / LANES;
             for l in 0..LANES {

@@ -12,6 +12,10 @@ use sph_core::neighbors::cell_grid::sort_particles;
 use sph_core::neighbors::{NeighborLists, Reach, kd_tree};
 use sph_core::{Dim2, Dim3, Dimension, Domain, Particle, Particles};
 
+/// The allocator of the programs.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 const REACH: Reach = Reach { factor: 1.1, skin: 0.2 };
 
 /// `edge` particles of size 1 along each axis, in cell order, in a box that is periodic in y.

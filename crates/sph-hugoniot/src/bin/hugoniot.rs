@@ -5,6 +5,11 @@ use std::process::ExitCode;
 use clap::Parser;
 use sph_hugoniot::cli;
 
+/// Memory in large pages of 2 MiB, where the system has them: a step of many particles is some percent faster than with the
+/// system's allocator.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     let arguments = cli::Arguments::parse();
     tracing_subscriber::fmt()

@@ -3,6 +3,10 @@
 use sph_core::{Components, Domain, Particle, Particles};
 use sph_riemann::{Settings, Simulation, SolidDimension};
 
+/// The allocator of the programs.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 const SIZE: f64 = 1e-6;
 
 /// A periodic lattice of `cells` particles along each axis in a smooth flow; with two pores in each square of 20, if

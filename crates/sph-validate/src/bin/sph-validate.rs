@@ -8,6 +8,11 @@ use std::process::ExitCode;
 use clap::Parser;
 use sph_validate::cli::{Arguments, execute};
 
+/// Memory in large pages of 2 MiB, where the system has them: a step of many particles is some percent faster than with the
+/// system's allocator.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     match execute(&Arguments::parse()) {
         Ok(code) => ExitCode::from(code),

@@ -318,13 +318,25 @@ pub fn dispatch_with<K: LaneKernel>(set: InstructionSet, kernel: K) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,popcnt")]
 fn run_avx512<K: LaneKernel>(kernel: K) {
+    align_stack();
     kernel.run::<Avx512>();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,popcnt")]
 fn run_avx2<K: LaneKernel>(kernel: K) {
+    align_stack();
     kernel.run::<Avx2>();
+}
+
+/// Makes the compiler begin the stack of the function it is called from at a whole cache line. It keeps registers there that
+/// do not fit the machine, and aligns their places only if it knows before it hands out registers that something wants it:
+/// else each of them lies across two lines, or not, as the depth of the calls before has it.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn align_stack() {
+    let mut line = Line::default();
+    std::hint::black_box(&mut line);
 }
 
 #[cfg(test)]

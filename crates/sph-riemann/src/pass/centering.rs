@@ -19,7 +19,7 @@ use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
 use super::ahead::Ahead;
 use super::gradient::CENTERING_EIGENVALUE;
-use super::sums::{TilePairs, add_to_buffer, collect};
+use super::sums::{TilePairs, add_to_buffer, ask_ahead, collect};
 use super::{Pass, load_line, own_indices};
 use crate::dimension::{SolidDimension, dot};
 use crate::record::{Centered, Row, Sides, Sums};
@@ -61,15 +61,13 @@ impl<D: SolidDimension> Deltas<'_, D> {
             .zip(own.par_chunks_mut(TILE * D::SIDES_LINES))
             .zip(rows.par_chunks(TILE_BLOCKS * Row::count::<D>()))
             .enumerate();
-        tiles.for_each(|(t, ((sums, sides), rows))| {
+        tiles.for_each(|(t, ((sums, sides), own_rows))| {
             collect::<D>(self.lists, self.pairs, t, sums);
-            for (b, rows) in rows.chunks_exact(Row::count::<D>()).enumerate() {
-                let ahead = b + TILE_BLOCKS;
-                prefetch(sums, ahead * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
-                prefetch(rows, TILE_BLOCKS * Row::count::<D>() + Row::LEAST_EIGENVALUE, 1);
+            ask_ahead::<D>(self.lists, self.pairs, t, sums);
+            for (b, own_rows) in own_rows.chunks_exact(Row::count::<D>()).enumerate() {
+                self.ask_for_marked(t, b, rows, sums, sides);
                 for l in 0..LANES {
-                    prefetch(sides, (ahead * LANES + l) * D::SIDES_LINES, 1);
-                    if rows[Row::LEAST_EIGENVALUE].0[l] < CENTERING_EIGENVALUE {
+                    if own_rows[Row::LEAST_EIGENVALUE].0[l] < CENTERING_EIGENVALUE {
                         let k = b * LANES + l;
                         let side = &mut sides[k * D::SIDES_LINES..(k + 1) * D::SIDES_LINES];
                         self.particle(t * TILE + k, &sums[k * D::SUM_LINES].0, side);
@@ -79,6 +77,21 @@ impl<D: SolidDimension> Deltas<'_, D> {
         });
         self.refresh_copies(sides);
         true
+    }
+
+    /// Asks for what block `b` of the tile after tile `t` needs, and for the eigenvalues of the tile after that: of records only
+    /// those of particles with a mark, few of all.
+    #[inline(always)]
+    fn ask_for_marked(&self, t: usize, b: usize, rows: &[Line], sums: &[Line], sides: &[Line]) {
+        let eigenvalue =
+            |tiles: usize| ((t + tiles) * TILE_BLOCKS + b) * Row::count::<D>() + Row::LEAST_EIGENVALUE;
+        prefetch(rows, eigenvalue(2), 1);
+        let Some(next) = rows.get(eigenvalue(1)) else { return };
+        for l in (0..LANES).filter(|l| next.0[*l] < CENTERING_EIGENVALUE) {
+            let particle = (b + TILE_BLOCKS) * LANES + l;
+            prefetch(sums, particle * D::SUM_LINES, 1);
+            prefetch(sides, particle * D::SIDES_LINES, 1);
+        }
     }
 
     /// δ of particle `i` in the place of its impedances, if it is marked; all of it is in the first line.

@@ -23,7 +23,7 @@ use crate::scheme::SurfaceTreatment;
 pub use centering::Deltas;
 pub use smoothing::{Sizes, Smoothing};
 use sums::{AddRecords, CopyRecords};
-pub use sums::{TilePairs, collect};
+pub use sums::{TilePairs, ask_ahead, collect};
 
 /// What all passes read.
 #[derive(Clone, Copy)]

@@ -7,8 +7,8 @@
 
 use std::cell::RefCell;
 
-use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch, dispatch_with};
-use sph_core::neighbors::{NeighborLists, TILE};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch, dispatch_with, prefetch};
+use sph_core::neighbors::{NeighborLists, TILE, TileLists};
 
 use crate::dimension::SolidDimension;
 
@@ -119,6 +119,30 @@ pub fn collect<D: SolidDimension>(
         let sums = &foreign[range.start * stride..range.end * stride];
         let particles = Some(&lists.tiles()[source].foreign()[range]);
         dispatch(AddRecords { into: own, particles, first: tile * TILE, sums, stride });
+    }
+}
+
+/// Asks for what [`collect`] will read for the tile after `tile`, whose sums follow those in `own`; and for the lists of the
+/// tile after that.
+pub fn ask_ahead<D: SolidDimension>(
+    lists: &NeighborLists<D>,
+    pairs: &[TilePairs],
+    tile: usize,
+    own: &[Line],
+) {
+    let stride = D::SUM_LINES;
+    let incoming = |ahead: usize| lists.tiles().get(tile + ahead).map_or(&[][..], TileLists::incoming);
+    for incoming in incoming(2) {
+        let first = incoming.first as usize;
+        prefetch(lists.tiles()[incoming.tile as usize].foreign(), first, incoming.end as usize - first);
+    }
+    for incoming in incoming(1) {
+        let source = incoming.tile as usize;
+        let range = incoming.first as usize..incoming.end as usize;
+        prefetch(&pairs[source].foreign, range.start * stride, range.len() * stride);
+        for &particle in &lists.tiles()[source].foreign()[range] {
+            prefetch(own, (particle as usize - tile * TILE) * stride, stride);
+        }
     }
 }
 

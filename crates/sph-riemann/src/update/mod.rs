@@ -31,7 +31,7 @@ use crate::dimension::SolidDimension;
 use crate::error::{Stage, StepError};
 use crate::interventions::Interventions;
 use crate::matter::Matter;
-use crate::pass::{TilePairs, collect};
+use crate::pass::{TilePairs, ask_ahead, collect};
 use crate::record::{Prepared, Row};
 use crate::scheme::{Settings, SurfaceTreatment};
 use crate::time_step::{LeastStep, TimeStepReason};
@@ -185,6 +185,7 @@ fn for_each_tile<D: SolidDimension>(
     };
     let run = |t: usize, tile: Written<'_>| {
         collect(lists, pairs, t, tile.sums);
+        ask_ahead(lists, pairs, t, tile.sums);
         // SAFETY: the parallel iterators visit every tile once, and these are the only parts taken.
         let columns = unsafe { TileColumns::<D>::take(&columns, t) };
         *tile.report = TileReport::default();

@@ -67,6 +67,19 @@ impl Checker<'_> {
         None
     }
 
+    /// A plain number within [low, high], if one is given.
+    pub fn number_if_given(&self, field: &Field<Number>, low: f64, high: f64) -> Option<Option<f64>> {
+        let Field::Good(Number(value), span) = field else {
+            return matches!(field, Field::Absent).then_some(None);
+        };
+        if (low..=high).contains(value) {
+            return Some(Some(*value));
+        }
+        let hint = format!("from {} to {}, or left out", significant(low), significant(high));
+        self.refuse(span.clone(), format!("{} is out of range", significant(*value)), &hint);
+        None
+    }
+
     /// A whole number within [low, high], or the default.
     pub fn count(&self, field: &Field<Count>, default: u64, low: u64, high: u64) -> Option<usize> {
         let Field::Good(Count(value), span) = field else {

@@ -140,8 +140,9 @@ pub struct Settings {
     pub courant: f64,
     /// What is done at free surfaces; not used by [`Scheme::Csph`].
     pub surface: SurfaceTreatment,
-    /// Skin of the neighbor lists, in particle sizes [-].
-    pub skin: f64,
+    /// Skin of the neighbor lists, in particle sizes [-]; `None`: chosen from θ, see [`Settings::skin_width`].
+    #[serde(default)]
+    pub skin: Option<f64>,
     /// Keeps the density at that of the packing, or not.
     pub volume_consistency: Option<VolumeConsistency>,
     /// Closes the faces between particles, or not: for disordered clouds; on lattices it only costs.
@@ -167,10 +168,26 @@ impl Settings {
             smoothing: 0.5,
             courant,
             surface,
-            skin: 0.2,
+            skin: None,
             volume_consistency: Some(VolumeConsistency::default()),
             face_closure: None,
         }
+    }
+
+    /// Width of the skin of the neighbor lists in particle sizes [-]: that of the settings, or one that costs least. Pairs of
+    /// the skin are looked at in every step, while the wider it is, the longer lists live; so lists reach just not to the next
+    /// ring of a square or cubic lattice. At least 0.2, at most 0.4.
+    pub fn skin_width(&self, dimensions: usize) -> f64 {
+        const NARROWEST: f64 = 0.2;
+        const WIDEST: f64 = 0.4;
+        /// What rings come nearer when the lattice is pressed a little.
+        const SPARE: f64 = 0.05;
+        self.skin.unwrap_or_else(|| {
+            let reach = self.kernel.support() * 2.0 * self.smoothing;
+            let beyond = (reach + NARROWEST).powi(2).floor() as u32 + 1;
+            let next = (beyond..).find(|n| is_sum_of_squares(*n, dimensions));
+            next.map_or(WIDEST, |n| (f64::from(n).sqrt() - SPARE - reach).clamp(NARROWEST, WIDEST))
+        })
     }
 
     /// Names every setting that is outside its range.
@@ -187,7 +204,9 @@ impl Settings {
             format!("smoothing = {} is outside 0.3 to 2", self.smoothing),
         );
         check(within(self.courant, 1e-6, 1.0), format!("courant = {} is outside 1e-6 to 1", self.courant));
-        check(within(self.skin, 0.0, 2.0), format!("skin = {} particle sizes is outside 0 to 2", self.skin));
+        if let Some(skin) = self.skin {
+            check(within(skin, 0.0, 2.0), format!("skin = {skin} particle sizes is outside 0 to 2"));
+        }
         if let SurfaceTreatment::SpectralCap { cap } = self.surface {
             check(within(cap, 1.0, 100.0), format!("cap = {cap} of the spectral cap is outside 1 to 100"));
         }
@@ -214,8 +233,37 @@ impl Settings {
     }
 }
 
+/// Whether a number is the sum of `count` squares: the square of a ring's radius in a square or cubic lattice.
+fn is_sum_of_squares(number: u32, count: usize) -> bool {
+    let mut bases = (0..=number).take_while(|base| base * base <= number);
+    if count == 1 {
+        return bases.any(|base| base * base == number);
+    }
+    bases.any(|base| is_sum_of_squares(number - base * base, count - 1))
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self::for_scheme(Scheme::default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_skin_ends_before_the_next_ring_of_the_lattice() {
+        let width = |smoothing: f64, skin| Settings { smoothing, skin, ..Settings::default() }.skin_width(2);
+        // Rings at 2, √5, √8, 3, √10 D; lists reach to 4 θ D and the skin.
+        assert_eq!(width(0.5, None), 0.2, "√5 - 2 = 0.236");
+        assert_eq!(width(0.55, None), 0.4, "√8 - 2.2 = 0.628");
+        assert!((width(0.6, None) - (8.0_f64.sqrt() - 2.45)).abs() < 1e-12);
+        assert_eq!(width(0.6, Some(0.7)), 0.7, "asked for");
+        assert_eq!(
+            Settings { smoothing: 0.56, ..Settings::default() }.skin_width(3),
+            0.2,
+            "√6 - 2.24 = 0.21"
+        );
     }
 }

@@ -18,8 +18,8 @@ use crate::time_step::{LeastStep, TimeStepReason, courant_step, signal_speed};
 use crate::update::{Outcome, StepEnd, TileReport, first_broken, update};
 use crate::{prepare, surface, volume};
 
-/// Volume sums while lists live, that of the rebuild included.
-const MEASURES_A_SKIN: f64 = 3.0;
+/// By how much particles move against each other from one volume sum to the next, in particle sizes [-].
+const MOTION_BETWEEN_MEASURES: f64 = 0.2 / 3.0;
 
 /// Arrays that live as long as the neighbor lists.
 #[derive(Default)]
@@ -71,7 +71,7 @@ impl<D: SolidDimension> Simulation<D> {
         let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
         Reach {
             factor: self.settings.kernel.support() * self.settings.smoothing,
-            skin: self.settings.skin * largest,
+            skin: self.settings.skin_width(D::COUNT) * largest,
         }
     }
 
@@ -110,15 +110,16 @@ impl<D: SolidDimension> Simulation<D> {
         self.is_prepared = false;
     }
 
-    /// Whether the lists still hold, and volume sums anew where particles have moved by a further share of the skin against
-    /// each other: how closely a density follows its packing must not hang on how long lists live.
+    /// Whether the lists still hold, and volume sums anew where particles have moved further against each other: how closely a
+    /// density follows its packing must not hang on how long lists live.
     fn look_at_motion(&mut self) {
         let mut clock = Instant::now();
         let before =
             std::mem::replace(&mut self.motion_share, self.lists.motion_share(&self.particles.position));
         self.stage_times.add(StepStage::Lists, &mut clock);
         self.lists_valid = self.motion_share <= 1.0;
-        let part = |share: f64| (share * MEASURES_A_SKIN).floor();
+        let skin = self.settings.skin_width(D::COUNT);
+        let part = |share: f64| (share * skin / MOTION_BETWEEN_MEASURES).floor();
         if self.lists_valid && part(self.motion_share) > part(before) {
             self.measure_volumes();
             self.stage_times.add(StepStage::Volume, &mut clock);

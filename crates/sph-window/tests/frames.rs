@@ -35,7 +35,7 @@ fn early_steps_are_the_same_in_any_frame_to_round_off() {
             exchange_drift: 3.9,
             ..WindowSettings::new(160.0 * SIZE, 250.0)
         };
-        let solver = Settings { skin: 1.0, ..solver() };
+        let solver = Settings { skin: Some(1.0), ..solver() };
         let mut window = Window::new(porous(), vec![copper()], solver, settings).unwrap();
         for boost in boosts {
             (0..12).for_each(|_| assert!(window.step().is_ok()));

@@ -153,16 +153,19 @@ impl Lattice {
         }
         offsets
     }
+
+    /// Sum of `term`(r²) over the points less than `radius` [D] from one of them, itself included, r being their distance [D].
+    pub fn sum(self, radius: f64, term: impl Fn(f64) -> f64 + Sync) -> f64 {
+        let offsets = self.offsets_within(radius);
+        crate::reduce::sum_of(offsets.len(), |k| term(offsets[k].iter().map(|x| x * x).sum()))
+    }
 }
 
 /// Σ_j V_j W(r_ij; h), j = i included, over a perfect lattice, for a kernel with h = `width` D [-].
 ///
 /// One for a kernel much wider than D; what a particle of a shut, undistorted medium sees.
 pub fn lattice_volume_sum(lattice: Lattice, width: f64, kernel: KernelFamily) -> f64 {
-    let offsets = lattice.offsets_within(kernel.support() * width);
-    let distance = |offset: &[f64; 3]| offset.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let value = |offset: &[f64; 3]| kernel.value(distance(offset) / width);
-    let sum = crate::reduce::sum_of(offsets.len(), |k| value(&offsets[k]));
+    let sum = lattice.sum(kernel.support() * width, |r2| kernel.value(r2.sqrt() / width));
     kernel.normalization(lattice.dimension_count()) * width.powi(-(lattice.dimension_count() as i32)) * sum
 }
 

@@ -16,9 +16,12 @@
 //! **A new kernel** is one file here with a type that implements [`SmoothingKernel`], one variant of [`KernelFamily`]
 //! and one arm in the macro below; the tests run over [`KernelFamily::ALL`].
 //!
+//! [`packing`] is none of these: the kernel of volume sums.
+//!
 //! Source of the paper's choice: Rublev & Murzov, arXiv 2410.14646, section 2 (Wendland C2).
 
 pub mod cubic_spline;
+pub mod packing;
 pub mod quintic;
 pub mod wendland_c2;
 pub mod wendland_c4;

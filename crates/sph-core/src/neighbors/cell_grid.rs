@@ -1,5 +1,7 @@
 //! Cells: the order of particles in memory, and the search for neighbors.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::dimension::{Components, Dimension};
@@ -299,18 +301,38 @@ impl<D: Dimension> CellSortedPoints<D> {
         }
     }
 
-    /// True if points within `reach` [m] of a point are those that `vicinity` has.
+    /// Calls `work` with each cell that sorted points from `first` to `end` are in, these being all points of their cells or,
+    /// for the first and the last cell, some of them; and with the range of these points.
     #[inline(always)]
-    pub fn is_known(&self, point: D::Vector, reach: f64, vicinity: &Vicinity) -> bool {
-        let [low, high] = self.cells_near(point, reach).map(|cell| self.grid.number(cell));
-        (low, high) == vicinity.cells
+    pub fn cells_of(&self, points: Range<usize>, mut work: impl FnMut([usize; 3], Range<usize>)) {
+        let mut first = points.start;
+        while first < points.end {
+            let cell = self.grid.coordinates(|a| self.position[a][first]);
+            let end = (self.sort.start[self.grid.number(cell) + 1] as usize).min(points.end);
+            work(cell, first..end);
+            first = end;
+        }
+    }
+
+    /// Finds the points that may lie within `reach` [m] of those in a cell.
+    #[inline(always)]
+    pub fn look_around_cell(&self, cell: [usize; 3], reach: f64, vicinity: &mut Vicinity) {
+        // A whole number of cells stays that number, whatever the rounding.
+        let span = (reach * self.grid.inverse_width * (1.0 - 1e-12)).ceil() as usize;
+        let low = cell.map(|c| c.saturating_sub(span));
+        let high = std::array::from_fn(|a| (cell[a] + span).min(self.grid.count[a] - 1));
+        self.look_at([low, high], vicinity);
     }
 
     /// Finds the points that may lie within `reach` [m] of a point. Points of one cell see the same: where the one before
     /// was there too, there is nothing to do.
     #[inline(always)]
     pub fn look_around(&self, point: D::Vector, reach: f64, vicinity: &mut Vicinity) {
-        let cells = self.cells_near(point, reach);
+        self.look_at(self.cells_near(point, reach), vicinity);
+    }
+
+    #[inline(always)]
+    fn look_at(&self, cells: [[usize; 3]; 2], vicinity: &mut Vicinity) {
         let [low, high] = cells.map(|cell| self.grid.number(cell));
         if (low, high) == vicinity.cells {
             return;

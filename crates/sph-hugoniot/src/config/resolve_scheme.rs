@@ -16,7 +16,7 @@ impl Resolver<'_> {
         let kernel = self.choice(&s.kernel, usual.kernel);
         let smoothing = self.number(&s.smoothing, usual.smoothing, 0.45, 1.0);
         let courant = self.number(&s.cfl, usual.courant, 0.001, 1.0);
-        let skin = self.number(&s.skin, usual.skin, 0.0, 2.0);
+        let skin = self.number_if_given(&s.skin, 0.0, 2.0);
         let surface = self.surface(&s.surface, usual.surface);
         let volume_consistency = self.volume_consistency(&s.volume_consistency, usual.volume_consistency);
         let face_closure = self.face_closure(&s.face_closure);

@@ -193,7 +193,7 @@ pub struct SchemeSchema {
     pub cfl: Field<Number>,
     /// What replaces L⁻¹ at free surfaces.
     pub surface: Field<SurfaceSchema>,
-    /// Skin of the neighbor lists in D.
+    /// Skin of the neighbor lists in D; chosen from θ if left out.
     pub skin: Field<Number>,
     /// Relaxation of the density towards the particles' packing.
     pub volume_consistency: Field<VolumeConsistencySchema>,

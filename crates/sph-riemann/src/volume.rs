@@ -1,17 +1,18 @@
 //! Volume consistency: shut pores must fill space.
 //!
 //! The density of the continuity equation drifts from the particles' packing where plastic strain is large. At each rebuild of
-//! the lists, and whenever particles have moved by a further third of the skin against each other, the volume sum with a wide kernel is
-//! held against that of a perfect lattice,
+//! the lists, and whenever particles have moved by a further fifteenth of D against each other, the volume sum with a wide
+//! kernel is held against that of a perfect lattice,
 //!
 //! ```text
 //! S_i  = V_i W(0; h_S) + Σ_j V_j W(r_ij; h_S),  h_S = width × D,   ΔS_i = S_i - S_lattice
 //! ```
 //!
 //! with the kernel of [`sph_core::kernel::packing`] and S_lattice of the square lattice in the plane and of the cubic one in
-//! space (other lattices of the same density, and these pressed to 0.7 D along one axis, differ by 3e-4 at most). On a disordered packing the sums scatter by more than the tolerance; each particle may then
-//! be held against its own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next sum the density
-//! relaxes, besides the flow's own rate, with
+//! space (on every lattice here, and on a square one pressed to 0.7 D along one axis at the same density, S is within 3.2e-4
+//! of one). On a disordered packing the sums scatter by more than the tolerance; each particle may then be held against its
+//! own first sum in place of S_lattice ([`PackingReference::Start`]). Until the next sum the density relaxes, besides the
+//! flow's own rate, with
 //!
 //! ```text
 //! d(ln ρ)/dt += κ (c/h)(ΔS - tol)                  where ΔS > tol
@@ -173,6 +174,7 @@ impl<D: Dimension> VolumeSum<'_, D> {
         self.points.index()[p] as usize >= self.n_particles
     }
 
+    /// Brings what the vicinity names side by side.
     #[inline(always)]
     fn fetch<L: Lanes>(&self, candidates: &mut Candidates) {
         let Candidates { vicinity, eights, imposed } = candidates;

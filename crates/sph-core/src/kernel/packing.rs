@@ -72,6 +72,17 @@ mod tests {
     }
 
     #[test]
+    fn a_sum_over_a_pressed_lattice_of_the_same_density_is_one_nearly() {
+        let (h, pressed) = (2.0, 0.7);
+        let sum: f64 = (-12..=12)
+            .flat_map(|i| (-12..=12).map(move |j| (f64::from(i) * pressed, f64::from(j) / pressed)))
+            .map(|(x, y)| value((x * x + y * y) / (SUPPORT * h).powi(2)))
+            .sum();
+        let sum = sum * normalization(2) / (h * h);
+        assert!((sum - 1.0).abs() < 3.2e-4, "{sum}");
+    }
+
+    #[test]
     fn nothing_is_added_beyond_the_support() {
         assert_eq!([1.0, 1.0 + 1e-15, 7.0].map(value), [0.0; 3]);
         assert_eq!(value(0.0), 1.0);

@@ -301,8 +301,7 @@ impl<D: Dimension> CellSortedPoints<D> {
         }
     }
 
-    /// Calls `work` with each cell that sorted points from `first` to `end` are in, these being all points of their cells or,
-    /// for the first and the last cell, some of them; and with the range of these points.
+    /// Calls `work` for each cell that holds some of the given sorted points, with its coordinates and the range of those points.
     #[inline(always)]
     pub fn cells_of(&self, points: Range<usize>, mut work: impl FnMut([usize; 3], Range<usize>)) {
         let mut first = points.start;

@@ -6,7 +6,8 @@
 //! the fused multiply-add limit (a multiply-add counts two); `memory` is its bytes read and written once a step over the
 //! bandwidth. The best of some runs of thirty steps counts, rebuilds of the lists included.
 //!
-//! `--quick`: fewer cases and runs. `--cases RUNS CASE...`: these cases, that many runs each. `--least STEPS CASE...`: the
+//! `--quick`: fewer cases and runs. `--cases RUNS CASE...`: these cases, that many runs each. `--long RUNS CASE...`: the same
+//! in runs of 120 steps, with lists that live longer than thirty. `--least STEPS CASE...`: the
 //! least time of each stage in that many single steps, in nanoseconds a particle, which says something on a busy machine
 //! too. `--count CASE STEPS`: nothing but these steps of a case, for a counter of instructions.
 
@@ -23,8 +24,8 @@ use sph_core::lanes::InstructionSet;
 use sph_core::{Dim2, Dim3};
 use sph_riemann::{Scheme, Settings, Simulation, SolidDimension, StageTimes, StepStage};
 
-/// Steps of a run.
-const STEPS: u64 = 30;
+/// Steps of a run, and of a long one: lists with a wide skin outlive a short one.
+const STEPS: [u64; 2] = [30, 120];
 
 /// What is measured.
 #[derive(Clone, Copy)]
@@ -79,23 +80,23 @@ impl Case {
         Settings { smoothing: self.theta, ..Settings::for_scheme(self.scheme) }
     }
 
-    fn measure(&self, runs: usize) -> Measured {
+    fn measure(&self, runs: usize, steps: u64) -> Measured {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build().expect("threads");
         pool.install(|| match self.dimensions {
-            2 => self.run::<Dim2>(runs),
-            _ => self.run::<Dim3>(runs),
+            2 => self.run::<Dim2>(runs, steps),
+            _ => self.run::<Dim3>(runs, steps),
         })
     }
 
-    fn run<D: SolidDimension>(&self, runs: usize) -> Measured {
+    fn run<D: SolidDimension>(&self, runs: usize, steps: u64) -> Measured {
         let mut best: Option<Measured> = None;
         for _ in 0..runs {
             let mut simulation = lattice::<D>(self.cells, self.porous, self.settings());
             let before = *simulation.stage_times();
             let start = Instant::now();
-            advance(&mut simulation, STEPS);
+            advance(&mut simulation, steps);
             let seconds = start.elapsed().as_secs_f64();
-            let measured = measured(&simulation, seconds, &before);
+            let measured = measured(&simulation, seconds / steps as f64, &before);
             if best.as_ref().is_none_or(|best| measured.seconds < best.seconds) {
                 best = Some(measured);
             }
@@ -104,12 +105,13 @@ impl Case {
     }
 }
 
+/// `seconds`: of a step.
 fn measured<D: SolidDimension>(simulation: &Simulation<D>, seconds: f64, before: &StageTimes) -> Measured {
     let particles = simulation.particles().len();
     let n = particles as f64;
     Measured {
         particles,
-        seconds: seconds / (STEPS as f64 * n),
+        seconds: seconds / n,
         times: simulation.stage_times().since(before),
         neighbors: active_pairs(simulation) as f64 / n,
         bytes: simulation.bytes() as f64 / n,
@@ -156,14 +158,19 @@ fn main() {
     match words[..] {
         ["--count", name, steps] => count(name, steps.parse().expect("a number of steps")),
         ["--cases", runs, ref names @ ..] => {
-            table(true, runs.parse().expect("a number of runs"), &|case| names.contains(&case.name))
+            let runs = runs.parse().expect("a number of runs");
+            table(true, (runs, STEPS[0]), &|case| names.contains(&case.name))
+        }
+        ["--long", runs, ref names @ ..] => {
+            let runs = runs.parse().expect("a number of runs");
+            table(true, (runs, STEPS[1]), &|case| names.contains(&case.name))
         }
         ["--least", steps, ref names @ ..] => least(steps.parse().expect("a number of steps"), names),
-        ["--quick"] => table(true, 3, &|case| case.quick),
-        [] => table(false, 5, &|_| true),
+        ["--quick"] => table(true, (3, STEPS[0]), &|case| case.quick),
+        [] => table(false, (5, STEPS[0]), &|_| true),
         _ => {
             eprintln!(
-                "table: options are --quick, --cases RUNS CASE..., --least STEPS CASE..., or --count CASE STEPS"
+                "table: options are --quick, --cases RUNS CASE..., --long RUNS CASE..., --least STEPS CASE..., or --count CASE STEPS"
             );
             std::process::exit(2);
         }
@@ -227,7 +234,7 @@ fn steps_of<D: SolidDimension>(case: &Case, steps: u64) -> usize {
     simulation.particles().len()
 }
 
-fn table(quick: bool, runs: usize, wanted: &dyn Fn(&Case) -> bool) {
+fn table(quick: bool, (runs, steps): (usize, u64), wanted: &dyn Fn(&Case) -> bool) {
     let machine = Machine::measure(quick);
     println!("instructions: {:?}", InstructionSet::detect());
     machine.print();
@@ -238,6 +245,6 @@ fn table(quick: bool, runs: usize, wanted: &dyn Fn(&Case) -> bool) {
     println!("% of the machine's arithmetic and of its memory, then % of the time in each stage:");
     println!("{}", StepStage::ALL.map(StepStage::name).join(", "));
     for case in CASES.iter().filter(|case| wanted(case)) {
-        print(case, &case.measure(runs), &machine);
+        print(case, &case.measure(runs, steps), &machine);
     }
 }

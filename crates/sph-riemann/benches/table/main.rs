@@ -4,12 +4,12 @@
 //! for each case particle-steps per second, nanoseconds a pair, bytes a particle, the share of each stage, and how near the
 //! step comes to the limits: `arithmetic` is the number of operations of its pair loops ([`model`]) over its time and over
 //! the fused multiply-add limit (a multiply-add counts two); `memory` is its bytes read and written once a step over the
-//! bandwidth. The best of some runs of thirty steps counts, rebuilds of the lists included.
+//! bandwidth. The best of some runs of thirty steps counts, rebuilds of the lists included where they fall into it.
 //!
 //! `--quick`: fewer cases and runs. `--cases RUNS CASE...`: these cases, that many runs each. `--long RUNS CASE...`: the same
-//! in runs of 120 steps, with lists that live longer than thirty. `--least STEPS CASE...`: the
-//! least time of each stage in that many single steps, in nanoseconds a particle, which says something on a busy machine
-//! too. `--count CASE STEPS`: nothing but these steps of a case, for a counter of instructions.
+//! in runs of 120 steps, since lists with a wide skin live longer than thirty. `--least STEPS CASE...`: the least time of each
+//! stage in that many single steps, in nanoseconds a particle, which says something on a busy machine too. `--count CASE
+//! STEPS`: nothing but these steps of a case, for a counter of instructions.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -24,8 +24,10 @@ use sph_core::lanes::InstructionSet;
 use sph_core::{Dim2, Dim3};
 use sph_riemann::{Scheme, Settings, Simulation, SolidDimension, StageTimes, StepStage};
 
-/// Steps of a run, and of a long one: lists with a wide skin outlive a short one.
-const STEPS: [u64; 2] = [30, 120];
+/// Steps of a run.
+const STEPS: u64 = 30;
+/// Steps of a long run: lists with a wide skin outlive a short one.
+const LONG: u64 = 120;
 
 /// What is measured.
 #[derive(Clone, Copy)]
@@ -157,17 +159,14 @@ fn main() {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
         ["--count", name, steps] => count(name, steps.parse().expect("a number of steps")),
-        ["--cases", runs, ref names @ ..] => {
+        [which @ ("--cases" | "--long"), runs, ref names @ ..] => {
+            let steps = if which == "--long" { LONG } else { STEPS };
             let runs = runs.parse().expect("a number of runs");
-            table(true, (runs, STEPS[0]), &|case| names.contains(&case.name))
-        }
-        ["--long", runs, ref names @ ..] => {
-            let runs = runs.parse().expect("a number of runs");
-            table(true, (runs, STEPS[1]), &|case| names.contains(&case.name))
+            table(true, (runs, steps), &|case| names.contains(&case.name))
         }
         ["--least", steps, ref names @ ..] => least(steps.parse().expect("a number of steps"), names),
-        ["--quick"] => table(true, (3, STEPS[0]), &|case| case.quick),
-        [] => table(false, (5, STEPS[0]), &|_| true),
+        ["--quick"] => table(true, (3, STEPS), &|case| case.quick),
+        [] => table(false, (5, STEPS), &|_| true),
         _ => {
             eprintln!(
                 "table: options are --quick, --cases RUNS CASE..., --long RUNS CASE..., --least STEPS CASE..., or --count CASE STEPS"

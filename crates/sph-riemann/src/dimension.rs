@@ -5,7 +5,7 @@
 //! out-of-plane stress of plane strain is not among them: it does not act on the motion.
 
 use sph_core::dimension::{Components, Dim2, Dim3, Dimension, Value};
-use sph_core::lanes::{LANES, Lanes, Real};
+use sph_core::lanes::{LANES, Part, Real};
 
 use crate::pass::{Pass, Tile};
 use crate::prepare::PrepareTile;
@@ -58,7 +58,7 @@ pub trait SolidDimension: Dimension {
     type Fields<T: Value>: Components<T> + Value;
 
     /// K = Σ min(1/λ, cap) n⊗n over the eigenpairs of a symmetric matrix, and its least eigenvalue λ.
-    fn capped_inverse<L: Lanes>(matrix: Self::Symmetric<L>, cap: f64) -> (Self::Symmetric<L>, L);
+    fn capped_inverse<L: Part>(matrix: Self::Symmetric<L>, cap: f64) -> (Self::Symmetric<L>, L);
 
     /// (tr L I - L)⁻¹ v: turns the dual of a raw antisymmetric sum into an angular velocity.
     fn spin_solve<L: Real>(matrix: Self::Symmetric<L>, dual: Self::Spin<L>) -> Self::Spin<L>;
@@ -153,7 +153,7 @@ impl SolidDimension for Dim2 {
     /// With m the mean of the eigenvalues λ_1 ≥ λ_2 and f = min(1/λ, cap): K = ½(f_1 + f_2) I + s (L - m I), where
     /// s = (f_1 - f_2)/(λ_1 - λ_2), which is -f_1 f_2 as long as nothing is capped.
     #[inline(always)]
-    fn capped_inverse<L: Lanes>(matrix: [L; 3], cap: f64) -> ([L; 3], L) {
+    fn capped_inverse<L: Part>(matrix: [L; 3], cap: f64) -> ([L; 3], L) {
         let [xx, yy, xy] = matrix;
         let half = L::splat(0.5);
         let (one, floor) = (L::one(), L::splat(LEAST));
@@ -206,11 +206,11 @@ impl SolidDimension for Dim3 {
 
     /// Cofactors where nothing is capped; eigenpairs, one lane after the other, where something is.
     #[inline(always)]
-    fn capped_inverse<L: Lanes>(matrix: [L; 6], cap: f64) -> ([L; 6], L) {
+    fn capped_inverse<L: Part>(matrix: [L; 6], cap: f64) -> ([L; 6], L) {
         let lanes = matrix.map(|component| component.to_array());
         let mut inverse = [[0.0; LANES]; 6];
         let mut least = [0.0; LANES];
-        for l in 0..LANES {
+        for l in L::FIRST..L::FIRST + L::COUNT {
             let (k, smallest) = capped_inverse_3(lanes.map(|component| component[l]), cap);
             (0..6).for_each(|c| inverse[c][l] = k[c]);
             least[l] = smallest;

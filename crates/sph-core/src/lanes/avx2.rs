@@ -1,25 +1,42 @@
-//! Eight lanes in two AVX2 registers.
+//! Eight lanes in two AVX2 registers, and either half of them in one.
 //!
-//! Invariant of every `unsafe` block here: an [`Avx2`] exists only inside [`super::dispatch_with`], which has checked
+//! A machine with AVX2 has sixteen registers of four numbers. Eight lanes of a loop with many numbers at a time would keep most
+//! of them on the stack: such loops take one half after the other.
+//!
+//! Invariant of every `unsafe` block here: a [`Half`] exists only inside [`super::dispatch_with`], which has checked
 //! that the machine has AVX2 and fused multiply-add.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use super::{LANES, Lanes, Line, PLACES, Real};
+use super::{LANES, Lanes, Line, PLACES, Part, Real};
+
+/// Numbers in a register.
+const HALF: usize = LANES / 2;
+
+/// Four numbers in a register: lanes 4 `WHICH` to 4 `WHICH` + 3 of eight.
+#[derive(Clone, Copy, Debug)]
+pub struct Half<const WHICH: usize>(__m256d);
 
 /// Eight numbers in two registers.
 #[derive(Clone, Copy, Debug)]
-pub struct Avx2(__m256d, __m256d);
+pub struct Avx2(Half<0>, Half<1>);
 
 macro_rules! operator {
     ($trait:ident, $method:ident, $intrinsic:ident) => {
-        impl $trait for Avx2 {
+        impl<const WHICH: usize> $trait for Half<WHICH> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 // SAFETY: the invariant of this module.
-                unsafe { Self($intrinsic(self.0, other.0), $intrinsic(self.1, other.1)) }
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+        impl $trait for Avx2 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self($trait::$method(self.0, other.0), $trait::$method(self.1, other.1))
             }
         }
     };
@@ -29,15 +46,27 @@ operator!(Sub, sub, _mm256_sub_pd);
 operator!(Mul, mul, _mm256_mul_pd);
 operator!(Div, div, _mm256_div_pd);
 
-impl Neg for Avx2 {
+impl<const WHICH: usize> Neg for Half<WHICH> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe {
-            let sign = _mm256_set1_pd(-0.0);
-            Self(_mm256_xor_pd(self.0, sign), _mm256_xor_pd(self.1, sign))
-        }
+        Self(unsafe { _mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)) })
+    }
+}
+
+impl Neg for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1)
+    }
+}
+
+impl<const WHICH: usize> AddAssign for Half<WHICH> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
     }
 }
 
@@ -48,65 +77,91 @@ impl AddAssign for Avx2 {
     }
 }
 
-impl Real for Avx2 {
+impl<const WHICH: usize> Real for Half<WHICH> {
     #[inline(always)]
     fn splat(value: f64) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe { Self(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+        Self(unsafe { _mm256_set1_pd(value) })
     }
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe { Self(_mm256_fmadd_pd(self.0, b.0, c.0), _mm256_fmadd_pd(self.1, b.1, c.1)) }
+        Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe { Self(_mm256_max_pd(self.0, other.0), _mm256_max_pd(self.1, other.1)) }
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe { Self(_mm256_min_pd(self.0, other.0), _mm256_min_pd(self.1, other.1)) }
+        Self(unsafe { _mm256_min_pd(self.0, other.0) })
     }
     #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: the invariant of this module.
-        unsafe {
-            let sign = _mm256_set1_pd(-0.0);
-            Self(_mm256_andnot_pd(sign, self.0), _mm256_andnot_pd(sign, self.1))
-        }
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
     }
     #[inline(always)]
     fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
+        // Written bit by bit: where one of the two is zero the compiler then leaves a single operation behind the comparison.
         // SAFETY: the invariant of this module.
-        unsafe {
-            Self(
-                _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0)),
-                _mm256_blendv_pd(no.1, yes.1, _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1)),
-            )
-        }
+        Self(unsafe {
+            let less = _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0);
+            _mm256_or_pd(_mm256_and_pd(less, yes.0), _mm256_andnot_pd(less, no.0))
+        })
     }
 }
 
-impl Lanes for Avx2 {
+impl Real for Avx2 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(Real::splat(value), Real::splat(value))
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        Self(self.0.mul_add(b.0, c.0), self.1.mul_add(b.1, c.1))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0), self.1.max(other.1))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0), self.1.min(other.1))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn select_less(self, limit: Self, yes: Self, no: Self) -> Self {
+        Self(self.0.select_less(limit.0, yes.0, no.0), self.1.select_less(limit.1, yes.1, no.1))
+    }
+}
+
+impl<const WHICH: usize> Part for Half<WHICH> {
+    const FIRST: usize = WHICH * HALF;
+    const COUNT: usize = HALF;
     #[inline(always)]
     fn load(source: &[f64; LANES]) -> Self {
         // SAFETY: the invariant of this module; the source has eight numbers.
-        unsafe { Self(_mm256_loadu_pd(source.as_ptr()), _mm256_loadu_pd(source.as_ptr().add(4))) }
+        Self(unsafe { _mm256_loadu_pd(source.as_ptr().add(Self::FIRST)) })
     }
     #[inline(always)]
     fn store(self, target: &mut [f64; LANES]) {
         // SAFETY: the invariant of this module; the target has eight numbers.
-        unsafe {
-            _mm256_storeu_pd(target.as_mut_ptr(), self.0);
-            _mm256_storeu_pd(target.as_mut_ptr().add(4), self.1);
-        }
+        unsafe { _mm256_storeu_pd(target.as_mut_ptr().add(Self::FIRST), self.0) }
     }
     #[inline(always)]
     unsafe fn load_records(
@@ -117,53 +172,141 @@ impl Lanes for Avx2 {
     ) -> [Self; LANES] {
         // SAFETY: the invariant of this module; the caller promises that the records exist.
         unsafe {
-            let mut rows = [Self(_mm256_setzero_pd(), _mm256_setzero_pd()); LANES];
-            for l in 0..LANES {
-                let at = indices[l] as usize * stride + line;
+            let mut rows = [[_mm256_setzero_pd(); HALF]; 2];
+            for l in 0..HALF {
+                let at = indices[Self::FIRST + l] as usize * stride + line;
                 debug_assert!(at < lines.len());
                 let row = lines.as_ptr().add(at).cast::<f64>();
-                rows[l] = Self(_mm256_load_pd(row), _mm256_load_pd(row.add(4)));
+                (rows[0][l], rows[1][l]) = (_mm256_load_pd(row), _mm256_load_pd(row.add(HALF)));
             }
-            Self::transpose(rows)
+            let ([a, b, c, d], [e, f, g, h]) = (transpose(rows[0]), transpose(rows[1]));
+            [Self(a), Self(b), Self(c), Self(d), Self(e), Self(f), Self(g), Self(h)]
         }
     }
     #[inline(always)]
-    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
-        // SAFETY: the invariant of this module.
-        unsafe {
-            let r = block;
-            let a = transpose([r[0].0, r[1].0, r[2].0, r[3].0]);
-            let b = transpose([r[4].0, r[5].0, r[6].0, r[7].0]);
-            let c = transpose([r[0].1, r[1].1, r[2].1, r[3].1]);
-            let d = transpose([r[4].1, r[5].1, r[6].1, r[7].1]);
-            [
-                Self(a[0], b[0]),
-                Self(a[1], b[1]),
-                Self(a[2], b[2]),
-                Self(a[3], b[3]),
-                Self(c[0], d[0]),
-                Self(c[1], d[1]),
-                Self(c[2], d[2]),
-                Self(c[3], d[3]),
-            ]
+    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
+        let rows = Self::to_rows(block);
+        for l in 0..HALF {
+            rows[l].store(&mut lines[(Self::FIRST + l) * stride + line].0);
         }
     }
     #[inline(always)]
-    fn sums_and_maximum(self, other: Self) -> Self {
-        // SAFETY: the invariant of this module.
-        unsafe {
-            let (sum, larger) = (_mm256_add_pd(self.1, other.1), _mm256_max_pd(self.1, other.1));
-            Self(_mm256_add_pd(self.0, other.0), _mm256_blend_pd::<0b1000>(sum, larger))
+    unsafe fn add_to_records<const MAXIMUM: bool>(
+        block: [Self; LANES],
+        lines: &mut [Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) {
+        let rows = Self::to_rows(block);
+        for l in 0..HALF {
+            let at = indices[Self::FIRST + l] as usize * stride + line;
+            debug_assert!(at < lines.len());
+            // SAFETY: the caller's promise.
+            let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
+            let old = Avx2::load(record);
+            if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
         }
     }
     #[inline(always)]
     fn less_mask(self, limit: Self) -> u8 {
         // SAFETY: the invariant of this module.
-        unsafe {
-            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0));
-            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, limit.1));
-            (low | high << 4) as u8
+        let mask = unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, limit.0)) };
+        (mask as u8) << Self::FIRST
+    }
+}
+
+impl<const WHICH: usize> Half<WHICH> {
+    /// Eight numbers of four records, from columns to rows.
+    #[inline(always)]
+    fn to_rows(block: [Self; LANES]) -> [Avx2; HALF] {
+        let [a, b, c, d, e, f, g, h] = block;
+        // SAFETY: the invariant of this module.
+        let (low, high) = unsafe { (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, g.0, h.0])) };
+        let mut rows = [Avx2::zero(); HALF];
+        for l in 0..HALF {
+            rows[l] = Avx2(Half(low[l]), Half(high[l]));
         }
+        rows
+    }
+}
+
+impl Part for Avx2 {
+    const FIRST: usize = 0;
+    const COUNT: usize = LANES;
+    #[inline(always)]
+    fn load(source: &[f64; LANES]) -> Self {
+        Self(Part::load(source), Part::load(source))
+    }
+    #[inline(always)]
+    fn store(self, target: &mut [f64; LANES]) {
+        self.0.store(target);
+        self.1.store(target);
+    }
+    #[inline(always)]
+    unsafe fn load_records(
+        lines: &[Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) -> [Self; LANES] {
+        // SAFETY: the caller's promise.
+        unsafe {
+            join(
+                Part::load_records(lines, stride, line, indices),
+                Part::load_records(lines, stride, line, indices),
+            )
+        }
+    }
+    #[inline(always)]
+    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
+        super::store_all(block, lines, stride, line);
+    }
+    #[inline(always)]
+    unsafe fn add_to_records<const MAXIMUM: bool>(
+        block: [Self; LANES],
+        lines: &mut [Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) {
+        // SAFETY: the caller's promise.
+        unsafe { super::add_all::<Self, MAXIMUM>(block, lines, stride, line, indices) };
+    }
+    #[inline(always)]
+    fn less_mask(self, limit: Self) -> u8 {
+        self.0.less_mask(limit.0) | self.1.less_mask(limit.1)
+    }
+}
+
+impl Lanes for Avx2 {
+    type First = Half<0>;
+    type Second = Half<1>;
+    const HALVES: bool = true;
+    #[inline(always)]
+    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
+        let r = block;
+        // SAFETY: the invariant of this module.
+        let [a, b, c, d] = unsafe {
+            [
+                transpose([r[0].0.0, r[1].0.0, r[2].0.0, r[3].0.0]),
+                transpose([r[4].0.0, r[5].0.0, r[6].0.0, r[7].0.0]),
+                transpose([r[0].1.0, r[1].1.0, r[2].1.0, r[3].1.0]),
+                transpose([r[4].1.0, r[5].1.0, r[6].1.0, r[7].1.0]),
+            ]
+        };
+        let mut rows = [Self::zero(); LANES];
+        for l in 0..HALF {
+            rows[l] = Self(Half(a[l]), Half(b[l]));
+            rows[HALF + l] = Self(Half(c[l]), Half(d[l]));
+        }
+        rows
+    }
+    #[inline(always)]
+    fn sums_and_maximum(self, other: Self) -> Self {
+        let (sum, larger) = (self.1 + other.1, self.1.max(other.1));
+        // SAFETY: the invariant of this module.
+        Self(self.0 + other.0, Half(unsafe { _mm256_blend_pd::<0b1000>(sum.0, larger.0) }))
     }
     #[inline(always)]
     fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES] {
@@ -176,6 +319,16 @@ impl Lanes for Avx2 {
         }
         packed
     }
+}
+
+/// Eight columns from their halves.
+#[inline(always)]
+fn join(low: [Half<0>; LANES], high: [Half<1>; LANES]) -> [Avx2; LANES] {
+    let mut joined = [Avx2(low[0], high[0]); LANES];
+    for k in 1..LANES {
+        joined[k] = Avx2(low[k], high[k]);
+    }
+    joined
 }
 
 /// Rows to columns of a 4 × 4 block.

@@ -7,7 +7,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use super::{LANES, Lanes, Line, Real};
+use super::{LANES, Lanes, Line, Part, Real};
 
 /// Eight numbers in one register.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +88,9 @@ impl Real for Avx512 {
     }
 }
 
-impl Lanes for Avx512 {
+impl Part for Avx512 {
+    const FIRST: usize = 0;
+    const COUNT: usize = LANES;
     #[inline(always)]
     fn load(source: &[f64; LANES]) -> Self {
         // SAFETY: the invariant of this module; the source has eight numbers.
@@ -118,6 +120,32 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
+    fn less_mask(self, limit: Self) -> u8 {
+        // SAFETY: the invariant of this module.
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }
+    }
+    #[inline(always)]
+    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
+        super::store_all(block, lines, stride, line);
+    }
+    #[inline(always)]
+    unsafe fn add_to_records<const MAXIMUM: bool>(
+        block: [Self; LANES],
+        lines: &mut [Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) {
+        // SAFETY: the caller's promise.
+        unsafe { super::add_all::<Self, MAXIMUM>(block, lines, stride, line, indices) };
+    }
+}
+
+impl Lanes for Avx512 {
+    type First = Self;
+    type Second = Self;
+    const HALVES: bool = false;
+    #[inline(always)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         // SAFETY: the invariant of this module.
         unsafe {
@@ -132,11 +160,6 @@ impl Lanes for Avx512 {
     fn sums_and_maximum(self, other: Self) -> Self {
         // SAFETY: the invariant of this module.
         Self(unsafe { _mm512_mask_add_pd(_mm512_max_pd(self.0, other.0), 0x7f, self.0, other.0) })
-    }
-    #[inline(always)]
-    fn less_mask(self, limit: Self) -> u8 {
-        // SAFETY: the invariant of this module.
-        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }
     }
     #[inline(always)]
     fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES] {

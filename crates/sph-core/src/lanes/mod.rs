@@ -74,13 +74,19 @@ pub trait Real:
     }
 }
 
-/// Eight numbers in registers.
-pub trait Lanes: Real {
-    /// Eight consecutive numbers.
+/// Some of eight lanes: all of them, or one half. Pair loops are written for a part and run for each of a block, one after the
+/// other: a loop whose numbers do not fit the registers of a machine eight lanes at a time may fit them four at a time.
+/// Arguments and results have places for eight, of which a part reads and writes its own.
+pub trait Part: Real {
+    /// The first of its lanes.
+    const FIRST: usize;
+    /// How many lanes it has.
+    const COUNT: usize;
+    /// Its lanes of eight consecutive numbers.
     fn load(source: &[f64; LANES]) -> Self;
-    /// Writes the lanes to memory.
+    /// Writes its lanes to their places in memory.
     fn store(self, target: &mut [f64; LANES]);
-    /// Line `line` of eight records of `stride` lines each, transposed: element `k` of the result holds number `k` of
+    /// Line `line` of its records of eight, of `stride` lines each, transposed: element `k` of the result holds number `k` of
     /// every record.
     ///
     /// # Panics
@@ -94,54 +100,67 @@ pub trait Lanes: Real {
         line: usize,
         indices: &[u32; LANES],
     ) -> [Self; LANES];
-    /// Number `indices[l]` of a column, for every lane.
-    #[inline(always)]
-    fn gather(column: &[f64], indices: &[u32; LANES]) -> Self {
-        let mut numbers = [0.0; LANES];
-        for l in 0..LANES {
-            numbers[l] = column[indices[l] as usize];
-        }
-        Self::load(&numbers)
-    }
-    /// Rows to columns: lane `l` of element `k` becomes lane `k` of element `l`.
-    fn transpose(block: [Self; LANES]) -> [Self; LANES];
-    /// Bit `l` is set where `self < limit` in lane `l`.
-    fn less_mask(self, limit: Self) -> u8;
-    /// The numbers whose bits are set in `mask`, in their order, at the front; those behind mean nothing.
-    fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES];
-    /// The sums of both in all lanes but the last, which holds the larger of both (`other` if either is NaN).
-    fn sums_and_maximum(self, other: Self) -> Self;
-    /// Adds to line `line` of eight records of `stride` lines each, one after the other: lane `l` of element `k` goes to
-    /// number `k` of record `indices[l]`, as [`Lanes::sums_and_maximum`] has it if `MAXIMUM`.
+    /// Writes line `line` of its records of eight consecutive ones of `stride` lines each: lane `l` of element `k` becomes
+    /// number `k` of record `l`.
+    ///
+    /// # Panics
+    /// If there are fewer lines.
+    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize);
+    /// Adds to line `line` of its records of eight, of `stride` lines each, one after the other: lane `l` of element `k` goes
+    /// to number `k` of record `indices[l]`. If `MAXIMUM`, the last number of a record becomes the larger of both (the old one
+    /// if either is NaN).
     ///
     /// # Panics
     /// In debug builds, if a record is outside `lines`.
     ///
     /// # Safety
     /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbor list guarantees it.
-    #[inline(always)]
     unsafe fn add_to_records<const MAXIMUM: bool>(
         block: [Self; LANES],
         lines: &mut [Line],
         stride: usize,
         line: usize,
         indices: &[u32; LANES],
-    ) {
-        let rows = Self::transpose(block);
-        for l in 0..LANES {
-            let at = indices[l] as usize * stride + line;
-            debug_assert!(at < lines.len());
-            // SAFETY: the caller's promise.
-            let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
-            let old = Self::load(record);
-            if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
+    );
+    /// Bit `l` is set where `self < limit` in lane `l`.
+    fn less_mask(self, limit: Self) -> u8;
+    /// Number `indices[l]` of a column, for each of its lanes.
+    #[inline(always)]
+    fn gather(column: &[f64], indices: &[u32; LANES]) -> Self {
+        let mut numbers = [0.0; LANES];
+        for l in Self::FIRST..Self::FIRST + Self::COUNT {
+            numbers[l] = column[indices[l] as usize];
         }
+        Self::load(&numbers)
     }
     /// True if `self < limit` in some lane.
     #[inline(always)]
     fn any_less(self, limit: Self) -> bool {
         self.less_mask(limit) != 0
     }
+    /// Its lanes at their places in an array; the others are zero.
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut array = [0.0; LANES];
+        self.store(&mut array);
+        array
+    }
+}
+
+/// Eight numbers in registers.
+pub trait Lanes: Part {
+    /// What a pair loop with many numbers works on first: all lanes, or half of them if `HALVES`.
+    type First: Part;
+    /// The other half, if `HALVES`.
+    type Second: Part;
+    /// Whether such a loop takes one half after the other.
+    const HALVES: bool;
+    /// Rows to columns: lane `l` of element `k` becomes lane `k` of element `l`.
+    fn transpose(block: [Self; LANES]) -> [Self; LANES];
+    /// The numbers whose bits are set in `mask`, in their order, at the front; those behind mean nothing.
+    fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES];
+    /// The sums of both in all lanes but the last, which holds the larger of both (`other` if either is NaN).
+    fn sums_and_maximum(self, other: Self) -> Self;
     /// Eight numbers of a column from number `first` on; the last one again where the column ends before.
     #[inline(always)]
     fn load_from(column: &[f64], first: usize) -> Self {
@@ -165,12 +184,37 @@ pub trait Lanes: Real {
             rest.copy_from_slice(&self.to_array()[..length]);
         }
     }
-    /// The lanes as an array.
-    #[inline(always)]
-    fn to_array(self) -> [f64; LANES] {
-        let mut array = [0.0; LANES];
-        self.store(&mut array);
-        array
+}
+
+/// [`Part::store_records`] of all lanes.
+#[inline(always)]
+fn store_all<L: Lanes>(block: [L; LANES], lines: &mut [Line], stride: usize, line: usize) {
+    let rows = L::transpose(block);
+    for l in 0..LANES {
+        rows[l].store(&mut lines[l * stride + line].0);
+    }
+}
+
+/// [`Part::add_to_records`] of all lanes.
+///
+/// # Safety
+/// As there.
+#[inline(always)]
+unsafe fn add_all<L: Lanes, const MAXIMUM: bool>(
+    block: [L; LANES],
+    lines: &mut [Line],
+    stride: usize,
+    line: usize,
+    indices: &[u32; LANES],
+) {
+    let rows = L::transpose(block);
+    for l in 0..LANES {
+        let at = indices[l] as usize * stride + line;
+        debug_assert!(at < lines.len());
+        // SAFETY: the caller's promise.
+        let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
+        let old = L::load(record);
+        if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
     }
 }
 
@@ -370,6 +414,64 @@ mod tests {
                 // A NaN's sign and payload are nobody's concern.
                 self.1.extend(lanes.to_array().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
             }
+        }
+    }
+
+    /// What parts leave behind: numbers at the places of their lanes, and records that they add to.
+    #[derive(Default)]
+    struct Left {
+        places: [[f64; LANES]; 10],
+        records: [Line; LANES],
+        sums: [Line; 4],
+    }
+
+    /// All lanes at once, and one part after the other.
+    struct Parts<'a>(&'a [Line], &'a mut [Left; 2]);
+
+    #[inline(always)]
+    fn exercise<P: Part>(lines: &[Line], left: &mut Left) {
+        let a = P::load(&[1.0, -2.5, 3.0e200, f64::NAN, 0.0, -0.0, 1e-310, 7.0]);
+        let b = P::load(&[0.3, 2.5, 1.0e-200, 1.0, -0.0, 0.0, 3.0, 9.0]);
+        // SAFETY: the records 0..8 of two lines each exist.
+        let records = unsafe { P::load_records(lines, 2, 1, &[7, 0, 3, 3, 1, 2, 6, 5]) };
+        let column = P::gather(&[5.0, 6.0, 7.0], &[0, 1, 2, 1, 0, 0, 2, 2]);
+        for (k, lanes) in [a * b, a.select_less(b, a, column)].iter().chain(&records).enumerate() {
+            lanes.store(&mut left.places[k]);
+        }
+        for l in P::FIRST..P::FIRST + P::COUNT {
+            assert_eq!(a.less_mask(b) >> l & 1 == 1, [1, 6, 7].contains(&l), "{l}");
+            assert_eq!(b.to_array()[l], [0.3, 2.5, 1.0e-200, 1.0, -0.0, 0.0, 3.0, 9.0][l]);
+        }
+        P::store_records(records, &mut left.records, 1, 0);
+        // SAFETY: the second lines of two records of two lines exist.
+        unsafe { P::add_to_records::<true>(records, &mut left.sums, 2, 1, &[0, 1, 0, 0, 1, 0, 1, 0]) };
+    }
+
+    impl LaneKernel for Parts<'_> {
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            let [whole, parts] = self.1;
+            exercise::<L>(self.0, whole);
+            exercise::<L::First>(self.0, parts);
+            if L::HALVES {
+                exercise::<L::Second>(self.0, parts);
+            }
+        }
+    }
+
+    #[test]
+    fn two_halves_do_what_all_lanes_do() {
+        let lines: Vec<Line> = (0..16).map(|i| Line(std::array::from_fn(|k| (100 * i + k) as f64))).collect();
+        for set in InstructionSet::available() {
+            let mut left = [Left::default(), Left::default()];
+            dispatch_with(set, Parts(&lines, &mut left));
+            let [whole, parts] = left;
+            let bits =
+                |left: &Left| left.places.map(|row| row.map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
+            assert_eq!(bits(&whole), bits(&parts), "{set:?}");
+            // Record 7 begins with 1500: it is the first of those that the lanes name.
+            assert_eq!(whole.records[0].0[0], 1500.0);
+            assert_eq!((whole.records, whole.sums), (parts.records, parts.sums), "{set:?}");
         }
     }
 

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use super::{LANES, Lanes, Line, PLACES, Real};
+use super::{LANES, Lanes, Line, PLACES, Part, Real};
 
 /// Eight numbers in an array.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +81,9 @@ impl Real for Plain {
     }
 }
 
-impl Lanes for Plain {
+impl Part for Plain {
+    const FIRST: usize = 0;
+    const COUNT: usize = LANES;
     #[inline(always)]
     fn load(source: &[f64; LANES]) -> Self {
         Self(*source)
@@ -102,6 +104,31 @@ impl Lanes for Plain {
         std::array::from_fn(|k| Self(std::array::from_fn(|l| records[l][k])))
     }
     #[inline(never)]
+    fn less_mask(self, limit: Self) -> u8 {
+        (0..LANES).fold(0, |mask, l| mask | ((self.0[l] < limit.0[l]) as u8) << l)
+    }
+    #[inline(always)]
+    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
+        super::store_all(block, lines, stride, line);
+    }
+    #[inline(always)]
+    unsafe fn add_to_records<const MAXIMUM: bool>(
+        block: [Self; LANES],
+        lines: &mut [Line],
+        stride: usize,
+        line: usize,
+        indices: &[u32; LANES],
+    ) {
+        // SAFETY: the caller's promise.
+        unsafe { super::add_all::<Self, MAXIMUM>(block, lines, stride, line, indices) };
+    }
+}
+
+impl Lanes for Plain {
+    type First = Self;
+    type Second = Self;
+    const HALVES: bool = false;
+    #[inline(never)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
     }
@@ -110,10 +137,6 @@ impl Lanes for Plain {
         let mut result = self + other;
         result.0[LANES - 1] = Real::max(self.0[LANES - 1], other.0[LANES - 1]);
         result
-    }
-    #[inline(never)]
-    fn less_mask(self, limit: Self) -> u8 {
-        (0..LANES).fold(0, |mask, l| mask | ((self.0[l] < limit.0[l]) as u8) << l)
     }
     #[inline(never)]
     fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES] {

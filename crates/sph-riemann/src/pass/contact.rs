@@ -20,7 +20,7 @@
 use std::hint::black_box;
 
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, prefetch};
+use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, Part, prefetch};
 
 use super::ahead::Ahead;
 use super::sums::{TilePairs, add_to_buffer};
@@ -57,7 +57,7 @@ struct Chosen {
 }
 
 /// What the contact of a pair gives.
-struct PairContact<D: SolidDimension, L: Lanes> {
+struct PairContact<D: SolidDimension, L: Part> {
     /// w e_R [m^(d-1)].
     gradient: D::Axes<L>,
     /// w t* [N].
@@ -75,6 +75,19 @@ struct PairContact<D: SolidDimension, L: Lanes> {
 impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, '_, D, RECONSTRUCT> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
+        // Reconstruction has more numbers than sixteen registers hold eight at a time; without it eight are faster.
+        if RECONSTRUCT && L::HALVES {
+            self.parts::<L::First, L::Second>(true);
+        } else {
+            self.parts::<L, L>(false);
+        }
+    }
+}
+
+impl<D: SolidDimension, const RECONSTRUCT: bool> ContactTile<'_, '_, D, RECONSTRUCT> {
+    /// The tile, of each slot first the part `P`, then the part `Q`, if there is one: sums have the same order either way.
+    #[inline(always)]
+    fn parts<P: Part, Q: Part>(self, has_second: bool) {
         let Self { pass, index, limiter, pairs, buffer, sums } = self;
         let lists = &pass.lists.tiles()[index];
         pairs.clear_forces(lists.n_slots_once());
@@ -83,49 +96,102 @@ impl<D: SolidDimension, const RECONSTRUCT: bool> LaneKernel for ContactTile<'_, 
         let mut first = 0;
         for b in 0..lists.n_blocks() {
             prefetch(sums, b * LANES * D::SUM_LINES, LANES * D::SUM_LINES);
-            let lines = Left::<D, L, RECONSTRUCT>::LINES;
+            let lines = Left::<D, P, RECONSTRUCT>::LINES;
             ahead.records(b, pass.records, lines, lines);
             let (slots, targets) = lists.pairs(b);
-            let left = Left::<D, L, RECONSTRUCT>::load(
-                pass,
-                &own_indices(index * sph_core::neighbors::TILE_BLOCKS + b),
-            );
-            let mut own = D::SumsRecord::<L>::splat(L::zero());
+            let indices = own_indices(index * sph_core::neighbors::TILE_BLOCKS + b);
+            let mut one = Side::<D, P, RECONSTRUCT>::load(pass, &indices);
+            let mut two =
+                if has_second { Some(Side::<D, Q, RECONSTRUCT>::load(pass, &indices)) } else { None };
             for (slots, targets) in slots.chunks(u32::BITS as usize).zip(targets.chunks(u32::BITS as usize)) {
-                let mut reaching = left.reaching(pass, slots);
+                let of_one = one.left.reaching(pass, slots);
+                let of_two = if let Some(two) = &two { two.left.reaching(pass, slots) } else { 0 };
+                let mut reaching = of_one | of_two;
                 while reaching != 0 {
                     let k = reaching.trailing_zeros() as usize;
                     reaching &= reaching - 1;
-                    let pair = left.contact(pass, limiter, &slots[k]);
-                    if pair.marked {
-                        pairs.marked[first + k] = true;
-                        for a in 0..D::COUNT {
-                            pairs.forces.push(Line::default());
-                            let last = pairs.forces.len() - 1;
-                            pair.force[a].store(&mut pairs.forces[last].0);
-                        }
+                    let slot =
+                        Slot { records: &slots[k], targets: targets[k].map(u32::from), place: first + k };
+                    if two.is_none() || of_one >> k & 1 == 1 {
+                        one.solve(pass, limiter, &slot, pairs, buffer);
                     }
-                    let other = left.share(&pair, &mut own);
-                    // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
-                    unsafe { add_to_buffer::<D, L>(&other, buffer, &targets[k].map(u32::from)) };
+                    if let Some(two) = &mut two
+                        && of_two >> k & 1 == 1
+                    {
+                        two.solve(pass, limiter, &slot, pairs, buffer);
+                    }
                 }
                 first += slots.len();
             }
-            // SAFETY: as above; places of own particles come first.
-            unsafe { add_to_buffer::<D, L>(&own, buffer, &own_indices(b)) };
+            one.add(&own_indices(b), buffer);
+            if let Some(two) = two {
+                two.add(&own_indices(b), buffer);
+            }
         }
     }
 }
 
+/// Eight pairs of a block.
+struct Slot<'a> {
+    /// Records of the right particles.
+    records: &'a [u32; LANES],
+    /// Places of the right particles in the buffer.
+    targets: [u32; LANES],
+    /// Place of the slot among all of the tile.
+    place: usize,
+}
+
+/// The left particles of a block, or half of them, and what they have gained.
+struct Side<D: SolidDimension, L: Part, const RECONSTRUCT: bool> {
+    left: Left<D, L, RECONSTRUCT>,
+    own: D::SumsRecord<L>,
+}
+
+impl<D: SolidDimension, L: Part, const RECONSTRUCT: bool> Side<D, L, RECONSTRUCT> {
+    #[inline(always)]
+    fn load(pass: &Pass<'_, D>, indices: &[u32; LANES]) -> Self {
+        Self { left: Left::load(pass, indices), own: D::SumsRecord::<L>::splat(L::zero()) }
+    }
+
+    /// Solves the contacts of a slot and adds what both sides gain.
+    #[inline(always)]
+    fn solve(
+        &mut self,
+        pass: &Pass<'_, D>,
+        limiter: Chosen,
+        slot: &Slot<'_>,
+        pairs: &mut TilePairs,
+        buffer: &mut [Line],
+    ) {
+        let pair = self.left.contact(pass, limiter, slot.records);
+        if pair.marked {
+            let forces = pairs.mark(slot.place, D::COUNT);
+            for a in 0..D::COUNT {
+                pair.force[a].store(&mut forces[a].0);
+            }
+        }
+        let other = self.left.share(&pair, &mut self.own);
+        // SAFETY: the buffer has the size that the lists ask for, `Pass::run_with_buffers` sees to it.
+        unsafe { add_to_buffer::<D, L>(&other, buffer, &slot.targets) };
+    }
+
+    /// Adds what the left particles have gained.
+    #[inline(always)]
+    fn add(&self, places: &[u32; LANES], buffer: &mut [Line]) {
+        // SAFETY: as in `solve`; places of own particles come first.
+        unsafe { add_to_buffer::<D, L>(&self.own, buffer, places) };
+    }
+}
+
 /// The left sides of eight pairs.
-struct Left<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> {
+struct Left<D: SolidDimension, L: Part, const RECONSTRUCT: bool> {
     record: D::SidesRecord<L>,
     size: L,
     twice_volume: L,
     marked: bool,
 }
 
-impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT> {
+impl<D: SolidDimension, L: Part, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT> {
     /// Lines of a record.
     const LINES: usize = if RECONSTRUCT { D::SIDES_LINES } else { D::CONSTANT_SIDES_LINES };
 
@@ -234,14 +300,14 @@ impl<D: SolidDimension, L: Lanes, const RECONSTRUCT: bool> Left<D, L, RECONSTRUC
 }
 
 /// Both sides of eight contacts.
-struct Pair<'a, D: SolidDimension, L: Lanes> {
+struct Pair<'a, D: SolidDimension, L: Part> {
     left: &'a D::SidesRecord<L>,
     right: &'a D::SidesRecord<L>,
     dx: &'a D::Axes<L>,
     e: &'a D::Axes<L>,
 }
 
-impl<D: SolidDimension, L: Lanes> Pair<'_, D, L> {
+impl<D: SolidDimension, L: Part> Pair<'_, D, L> {
     /// Velocity and traction at the contact.
     #[inline(always)]
     fn star<const RECONSTRUCT: bool>(&self, pass: &Pass<'_, D>, limiter: Chosen) -> (D::Axes<L>, D::Axes<L>) {
@@ -374,7 +440,7 @@ struct Impedances<L> {
 }
 
 /// What the contact changes of the left side.
-struct Change<D: SolidDimension, L: Lanes> {
+struct Change<D: SolidDimension, L: Part> {
     /// A along R [m/s].
     along: L,
     /// A [m/s].
@@ -383,7 +449,7 @@ struct Change<D: SolidDimension, L: Lanes> {
     traction: Option<D::Axes<L>>,
 }
 
-impl<L: Lanes> Impedances<L> {
+impl<L: Part> Impedances<L> {
     #[inline(always)]
     fn of<D: SolidDimension>(left: &D::SidesRecord<L>, right: &D::SidesRecord<L>) -> Self {
         let (l, t) = (Sides::longitudinal::<D>(), Sides::transverse::<D>());

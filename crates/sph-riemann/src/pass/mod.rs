@@ -13,7 +13,7 @@ mod sums;
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{InstructionSet, LANES, Lanes, Line, dispatch_with};
+use sph_core::lanes::{InstructionSet, LANES, Line, Part, dispatch_with};
 use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
 use crate::dimension::SolidDimension;
@@ -186,7 +186,7 @@ fn own_indices(block: usize) -> [u32; LANES] {
 /// # Safety
 /// As [`Lanes::load_records`].
 #[inline(always)]
-unsafe fn load_line<L: Lanes, R: Components<L>>(
+unsafe fn load_line<L: Part, R: Components<L>>(
     record: &mut R,
     records: &[Line],
     stride: usize,
@@ -202,15 +202,12 @@ unsafe fn load_line<L: Lanes, R: Components<L>>(
 
 /// Writes a record of each of eight particles, `stride` lines each.
 #[inline(always)]
-pub(crate) fn store_records<L: Lanes, R: Components<L>>(record: &R, lines: &mut [Line], stride: usize) {
+pub(crate) fn store_records<L: Part, R: Components<L>>(record: &R, lines: &mut [Line], stride: usize) {
     for line in 0..stride {
         let mut numbers = [L::zero(); LANES];
         for k in 0..LANES {
             numbers[k] = record[line * LANES + k];
         }
-        let numbers = L::transpose(numbers);
-        for l in 0..LANES {
-            numbers[l].store(&mut lines[l * stride + line].0);
-        }
+        L::store_records(numbers, lines, stride, line);
     }
 }

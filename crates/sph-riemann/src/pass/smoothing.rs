@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use sph_core::kernel::{KernelFamily, SmoothingKernel, WendlandC2};
-use sph_core::lanes::{LANES, Lanes};
+use sph_core::lanes::{LANES, Part};
 
 /// Sizes D of the particles that records show [m].
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,7 @@ impl<'a> Smoothing<'a> {
     /// Squared distance beyond which pairs are out of reach of the kernel [m²]: told without a root. Pairs at the very edge
     /// may lie within it, and have a slope of zero.
     #[inline(always)]
-    pub(super) fn reach_squared<L: Lanes>(&self, own: L, indices: &[u32; LANES]) -> L {
+    pub(super) fn reach_squared<L: Part>(&self, own: L, indices: &[u32; LANES]) -> L {
         let reach = if self.uniform.is_some() {
             L::splat(self.reach)
         } else {
@@ -86,13 +86,13 @@ impl<'a> Smoothing<'a> {
 
     /// Sizes of eight particles, where they are needed.
     #[inline(always)]
-    pub(super) fn own<L: Lanes>(&self, indices: &[u32; LANES]) -> L {
+    pub(super) fn own<L: Part>(&self, indices: &[u32; LANES]) -> L {
         if self.uniform.is_some() { L::zero() } else { L::gather(self.size, indices) }
     }
 
     /// Scales of eight pairs.
     #[inline(always)]
-    pub(super) fn scales<L: Lanes>(&self, own: L, indices: &[u32; LANES]) -> Scales<L> {
+    pub(super) fn scales<L: Part>(&self, own: L, indices: &[u32; LANES]) -> Scales<L> {
         if let Some(scales) = self.uniform {
             return Scales { inverse_h: L::splat(scales.inverse_h), slope: L::splat(scales.slope) };
         }
@@ -107,7 +107,7 @@ impl<'a> Smoothing<'a> {
 
     /// -(dw/dq)/q.
     #[inline(always)]
-    pub(super) fn minus_slope_over_q<L: Lanes>(&self, q: L) -> L {
+    pub(super) fn minus_slope_over_q<L: Part>(&self, q: L) -> L {
         if self.is_default { WendlandC2::minus_slope_over_q(q) } else { self.kernel.minus_slope_over_q(q) }
     }
 }
@@ -115,7 +115,7 @@ impl<'a> Smoothing<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sph_core::lanes::{LaneKernel, dispatch};
+    use sph_core::lanes::{LaneKernel, Lanes, dispatch};
 
     /// Pairs whose distances q are within a few roundings of the edge of the support.
     struct AtTheEdge<'a>(Smoothing<'a>, &'a mut Vec<(f64, bool)>);

@@ -7,7 +7,9 @@
 
 use std::cell::RefCell;
 
-use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, dispatch, dispatch_with, prefetch};
+use sph_core::lanes::{
+    InstructionSet, LANES, LaneKernel, Lanes, Line, Part, dispatch, dispatch_with, prefetch,
+};
 use sph_core::neighbors::{NeighborLists, TILE, TileLists};
 
 use crate::dimension::SolidDimension;
@@ -39,6 +41,17 @@ impl TilePairs {
         self.marked.clear();
         self.marked.resize(n_slots, false);
         self.forces.clear();
+    }
+
+    /// Marks slot `place`, the last one so far, and returns where its forces go, one line of each of `axes`.
+    #[inline(always)]
+    pub(super) fn mark(&mut self, place: usize, axes: usize) -> &mut [Line] {
+        if !self.marked[place] {
+            self.marked[place] = true;
+            self.forces.resize(self.forces.len() + axes, Line::default());
+        }
+        let first = self.forces.len() - axes;
+        &mut self.forces[first..]
     }
 
     pub(super) fn set_foreign(&mut self, sums: &[Line], instructions: InstructionSet) {
@@ -151,7 +164,7 @@ pub fn ask_ahead<D: SolidDimension>(
 /// # Safety
 /// `targets` are below the number of records in `buffer`: lists guarantee it of a buffer of their size.
 #[inline(always)]
-pub(super) unsafe fn add_to_buffer<D: SolidDimension, L: Lanes>(
+pub(super) unsafe fn add_to_buffer<D: SolidDimension, L: Part>(
     record: &D::SumsRecord<L>,
     buffer: &mut [Line],
     targets: &[u32; LANES],

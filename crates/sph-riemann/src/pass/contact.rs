@@ -257,6 +257,15 @@ impl<D: SolidDimension, L: Part, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT
         dx
     }
 
+    /// All lines of the right records but the first.
+    #[inline(always)]
+    fn load_rest(&self, pass: &Pass<'_, D>, slot: &[u32; LANES], right: &mut D::SidesRecord<L>) {
+        for line in 1..Self::LINES {
+            // SAFETY: entries of a list are below `n_records`, the length of the records.
+            unsafe { load_line(right, pass.records, Self::LINES, line, slot) };
+        }
+    }
+
     /// The contacts of eight pairs.
     #[inline(always)]
     fn contact(&self, pass: &Pass<'_, D>, limiter: Chosen, slot: &[u32; LANES]) -> PairContact<D, L> {
@@ -269,9 +278,11 @@ impl<D: SolidDimension, L: Part, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT
         }
         let dx = self.distance(&first_line);
         let r = dot::<D, L>(&dx, &dx).sqrt();
-        for line in 1..Self::LINES {
-            // SAFETY: entries of a list are below `n_records`, the length of the records.
-            unsafe { load_line(&mut right, pass.records, Self::LINES, line, slot) };
+        // Sixteen registers do not hold the other lines beside the geometry: the compiler would load them only to put them on
+        // the stack. Where there are more, their shuffles fill the time of the root.
+        let late = L::COUNT < LANES;
+        if !late {
+            self.load_rest(pass, slot, &mut right);
         }
         // A particle stands in for missing neighbors of its own: e = 0 there, and all is zero.
         let inverse_r = L::one() / r.max(L::splat(f64::MIN_POSITIVE));
@@ -280,6 +291,9 @@ impl<D: SolidDimension, L: Part, const RECONSTRUCT: bool> Left<D, L, RECONSTRUCT
         let volume = right[Sides::volume::<D>()];
         let weight_over_r = self.twice_volume * volume.abs() * slope;
         let weight = weight_over_r * r;
+        if late {
+            self.load_rest(pass, slot, &mut right);
+        }
         let (mut e, mut gradient, mut du, mut right_velocity) = (dx, dx, dx, dx);
         for a in 0..D::COUNT {
             e[a] = dx[a] * inverse_r;

@@ -9,6 +9,9 @@
 //! multiply-add only where [`Real::mul_add`] is written, correctly rounded division and square root, no approximate
 //! reciprocals. `max` and `min` return the second operand if either is NaN, as the x86 instructions do.
 //!
+//! A pair loop with more numbers than the registers of a machine hold may be written for a [`Part`] of the lanes and run for each
+//! half of a block in turn, where [`Lanes::HALVES`] says so: with AVX2. Sums keep their order.
+//!
 //! [`Real`] is what formulas need of a number; `f64` has it too, so a kernel function is written once for both.
 
 #[cfg(target_arch = "x86_64")]

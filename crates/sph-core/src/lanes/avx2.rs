@@ -151,6 +151,7 @@ impl Real for Avx2 {
 }
 
 impl<const WHICH: usize> Part for Half<WHICH> {
+    type Whole = Avx2;
     const FIRST: usize = WHICH * HALF;
     const COUNT: usize = HALF;
     #[inline(always)]
@@ -184,29 +185,15 @@ impl<const WHICH: usize> Part for Half<WHICH> {
         }
     }
     #[inline(always)]
-    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
-        let rows = Self::to_rows(block);
+    fn transpose(block: [Self; LANES]) -> [Avx2; LANES] {
+        let [a, b, c, d, e, f, g, h] = block;
+        // SAFETY: the invariant of this module.
+        let (low, high) = unsafe { (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, g.0, h.0])) };
+        let mut rows = [Avx2::zero(); LANES];
         for l in 0..HALF {
-            rows[l].store(&mut lines[(Self::FIRST + l) * stride + line].0);
+            rows[Self::FIRST + l] = Avx2(Half(low[l]), Half(high[l]));
         }
-    }
-    #[inline(always)]
-    unsafe fn add_to_records<const MAXIMUM: bool>(
-        block: [Self; LANES],
-        lines: &mut [Line],
-        stride: usize,
-        line: usize,
-        indices: &[u32; LANES],
-    ) {
-        let rows = Self::to_rows(block);
-        for l in 0..HALF {
-            let at = indices[Self::FIRST + l] as usize * stride + line;
-            debug_assert!(at < lines.len());
-            // SAFETY: the caller's promise.
-            let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
-            let old = Avx2::load(record);
-            if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
-        }
+        rows
     }
     #[inline(always)]
     fn less_mask(self, limit: Self) -> u8 {
@@ -216,22 +203,8 @@ impl<const WHICH: usize> Part for Half<WHICH> {
     }
 }
 
-impl<const WHICH: usize> Half<WHICH> {
-    /// Eight numbers of four records, from columns to rows.
-    #[inline(always)]
-    fn to_rows(block: [Self; LANES]) -> [Avx2; HALF] {
-        let [a, b, c, d, e, f, g, h] = block;
-        // SAFETY: the invariant of this module.
-        let (low, high) = unsafe { (transpose([a.0, b.0, c.0, d.0]), transpose([e.0, f.0, g.0, h.0])) };
-        let mut rows = [Avx2::zero(); HALF];
-        for l in 0..HALF {
-            rows[l] = Avx2(Half(low[l]), Half(high[l]));
-        }
-        rows
-    }
-}
-
 impl Part for Avx2 {
+    type Whole = Self;
     const FIRST: usize = 0;
     const COUNT: usize = LANES;
     #[inline(always)]
@@ -259,30 +232,9 @@ impl Part for Avx2 {
         }
     }
     #[inline(always)]
-    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
-        super::store_all(block, lines, stride, line);
-    }
-    #[inline(always)]
-    unsafe fn add_to_records<const MAXIMUM: bool>(
-        block: [Self; LANES],
-        lines: &mut [Line],
-        stride: usize,
-        line: usize,
-        indices: &[u32; LANES],
-    ) {
-        // SAFETY: the caller's promise.
-        unsafe { super::add_all::<Self, MAXIMUM>(block, lines, stride, line, indices) };
-    }
-    #[inline(always)]
     fn less_mask(self, limit: Self) -> u8 {
         self.0.less_mask(limit.0) | self.1.less_mask(limit.1)
     }
-}
-
-impl Lanes for Avx2 {
-    type First = Half<0>;
-    type Second = Half<1>;
-    const HALVES: bool = true;
     #[inline(always)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         let r = block;
@@ -302,6 +254,12 @@ impl Lanes for Avx2 {
         }
         rows
     }
+}
+
+impl Lanes for Avx2 {
+    type First = Half<0>;
+    type Second = Half<1>;
+    const HALVES: bool = true;
     #[inline(always)]
     fn sums_and_maximum(self, other: Self) -> Self {
         let (sum, larger) = (self.1 + other.1, self.1.max(other.1));

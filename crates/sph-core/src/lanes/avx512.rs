@@ -89,6 +89,7 @@ impl Real for Avx512 {
 }
 
 impl Part for Avx512 {
+    type Whole = Self;
     const FIRST: usize = 0;
     const COUNT: usize = LANES;
     #[inline(always)]
@@ -125,27 +126,6 @@ impl Part for Avx512 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, limit.0) }
     }
     #[inline(always)]
-    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
-        super::store_all(block, lines, stride, line);
-    }
-    #[inline(always)]
-    unsafe fn add_to_records<const MAXIMUM: bool>(
-        block: [Self; LANES],
-        lines: &mut [Line],
-        stride: usize,
-        line: usize,
-        indices: &[u32; LANES],
-    ) {
-        // SAFETY: the caller's promise.
-        unsafe { super::add_all::<Self, MAXIMUM>(block, lines, stride, line, indices) };
-    }
-}
-
-impl Lanes for Avx512 {
-    type First = Self;
-    type Second = Self;
-    const HALVES: bool = false;
-    #[inline(always)]
     fn transpose(block: [Self; LANES]) -> [Self; LANES] {
         // SAFETY: the invariant of this module.
         unsafe {
@@ -156,6 +136,12 @@ impl Lanes for Avx512 {
             wrap(transpose(rows))
         }
     }
+}
+
+impl Lanes for Avx512 {
+    type First = Self;
+    type Second = Self;
+    const HALVES: bool = false;
     #[inline(always)]
     fn sums_and_maximum(self, other: Self) -> Self {
         // SAFETY: the invariant of this module.

@@ -83,6 +83,8 @@ pub trait Real:
 /// other: a loop whose numbers do not fit the registers of a machine eight lanes at a time may fit them four at a time.
 /// Arguments and results have places for eight, of which a part reads and writes its own.
 pub trait Part: Real {
+    /// All eight lanes.
+    type Whole: Lanes;
     /// The first of its lanes.
     const FIRST: usize;
     /// How many lanes it has.
@@ -105,28 +107,47 @@ pub trait Part: Real {
         line: usize,
         indices: &[u32; LANES],
     ) -> [Self; LANES];
+    /// Columns to rows: lane `l` of element `k` becomes lane `k` of element `l`, for each of its lanes `l`; other rows mean
+    /// nothing.
+    fn transpose(block: [Self; LANES]) -> [Self::Whole; LANES];
     /// Writes line `line` of its records of eight consecutive ones of `stride` lines each: lane `l` of element `k` becomes
     /// number `k` of record `l`.
     ///
     /// # Panics
     /// If there are fewer lines.
-    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize);
+    #[inline(always)]
+    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
+        let rows = Self::transpose(block);
+        for l in Self::FIRST..Self::FIRST + Self::COUNT {
+            rows[l].store(&mut lines[l * stride + line].0);
+        }
+    }
     /// Adds to line `line` of its records of eight, of `stride` lines each, one after the other: lane `l` of element `k` goes
-    /// to number `k` of record `indices[l]`. If `MAXIMUM`, the last number of a record becomes the larger of both (the old one
-    /// if either is NaN).
+    /// to number `k` of record `indices[l]`, as [`Lanes::sums_and_maximum`] has it if `MAXIMUM`.
     ///
     /// # Panics
     /// In debug builds, if a record is outside `lines`.
     ///
     /// # Safety
     /// `indices[l] as usize * stride + line < lines.len()` for every lane: the neighbor list guarantees it.
+    #[inline(always)]
     unsafe fn add_to_records<const MAXIMUM: bool>(
         block: [Self; LANES],
         lines: &mut [Line],
         stride: usize,
         line: usize,
         indices: &[u32; LANES],
-    );
+    ) {
+        let rows = Self::transpose(block);
+        for l in Self::FIRST..Self::FIRST + Self::COUNT {
+            let at = indices[l] as usize * stride + line;
+            debug_assert!(at < lines.len());
+            // SAFETY: the caller's promise.
+            let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
+            let old = Self::Whole::load(record);
+            if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
+        }
+    }
     /// Bit `l` is set where `self < limit` in lane `l`.
     fn less_mask(self, limit: Self) -> u8;
     /// Number `indices[l]` of a column, for each of its lanes.
@@ -153,15 +174,13 @@ pub trait Part: Real {
 }
 
 /// Eight numbers in registers.
-pub trait Lanes: Part {
+pub trait Lanes: Part<Whole = Self> {
     /// What a pair loop with many numbers works on first: all lanes, or half of them if `HALVES`.
     type First: Part;
     /// The other half, if `HALVES`.
     type Second: Part;
     /// Whether such a loop takes one half after the other.
     const HALVES: bool;
-    /// Rows to columns: lane `l` of element `k` becomes lane `k` of element `l`.
-    fn transpose(block: [Self; LANES]) -> [Self; LANES];
     /// The numbers whose bits are set in `mask`, in their order, at the front; those behind mean nothing.
     fn pack(numbers: &[u32; LANES], mask: u8) -> [u32; LANES];
     /// The sums of both in all lanes but the last, which holds the larger of both (`other` if either is NaN).
@@ -188,38 +207,6 @@ pub trait Lanes: Part {
             let length = rest.len();
             rest.copy_from_slice(&self.to_array()[..length]);
         }
-    }
-}
-
-/// [`Part::store_records`] of all lanes.
-#[inline(always)]
-fn store_all<L: Lanes>(block: [L; LANES], lines: &mut [Line], stride: usize, line: usize) {
-    let rows = L::transpose(block);
-    for l in 0..LANES {
-        rows[l].store(&mut lines[l * stride + line].0);
-    }
-}
-
-/// [`Part::add_to_records`] of all lanes.
-///
-/// # Safety
-/// As there.
-#[inline(always)]
-unsafe fn add_all<L: Lanes, const MAXIMUM: bool>(
-    block: [L; LANES],
-    lines: &mut [Line],
-    stride: usize,
-    line: usize,
-    indices: &[u32; LANES],
-) {
-    let rows = L::transpose(block);
-    for l in 0..LANES {
-        let at = indices[l] as usize * stride + line;
-        debug_assert!(at < lines.len());
-        // SAFETY: the caller's promise.
-        let record = unsafe { &mut lines.get_unchecked_mut(at).0 };
-        let old = L::load(record);
-        if MAXIMUM { rows[l].sums_and_maximum(old) } else { rows[l] + old }.store(record);
     }
 }
 

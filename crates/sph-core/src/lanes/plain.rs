@@ -82,6 +82,7 @@ impl Real for Plain {
 }
 
 impl Part for Plain {
+    type Whole = Self;
     const FIRST: usize = 0;
     const COUNT: usize = LANES;
     #[inline(always)]
@@ -107,20 +108,9 @@ impl Part for Plain {
     fn less_mask(self, limit: Self) -> u8 {
         (0..LANES).fold(0, |mask, l| mask | ((self.0[l] < limit.0[l]) as u8) << l)
     }
-    #[inline(always)]
-    fn store_records(block: [Self; LANES], lines: &mut [Line], stride: usize, line: usize) {
-        super::store_all(block, lines, stride, line);
-    }
-    #[inline(always)]
-    unsafe fn add_to_records<const MAXIMUM: bool>(
-        block: [Self; LANES],
-        lines: &mut [Line],
-        stride: usize,
-        line: usize,
-        indices: &[u32; LANES],
-    ) {
-        // SAFETY: the caller's promise.
-        unsafe { super::add_all::<Self, MAXIMUM>(block, lines, stride, line, indices) };
+    #[inline(never)]
+    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
+        std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
     }
 }
 
@@ -128,10 +118,6 @@ impl Lanes for Plain {
     type First = Self;
     type Second = Self;
     const HALVES: bool = false;
-    #[inline(never)]
-    fn transpose(block: [Self; LANES]) -> [Self; LANES] {
-        std::array::from_fn(|l| Self(std::array::from_fn(|k| block[k].0[l])))
-    }
     #[inline(never)]
     fn sums_and_maximum(self, other: Self) -> Self {
         let mut result = self + other;

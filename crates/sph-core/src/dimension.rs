@@ -14,7 +14,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-use glam::{DMat2, DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 mod sealed {
     pub trait Sealed {}
@@ -107,8 +107,6 @@ pub trait Dimension:
     const TENSOR_AXES: &'static [(usize, usize)];
     /// A vector of the public interface.
     type Vector: Vector;
-    /// A matrix of the public interface.
-    type Matrix: Copy + Debug + Send + Sync;
     /// One `T` per axis.
     type Axes<T: Value>: Components<T> + Value;
     /// One `T` per stored component of a symmetric 3 × 3 tensor.
@@ -120,8 +118,6 @@ pub trait Dimension:
 
     /// Vector from a function of the axis.
     fn vector(component: impl FnMut(usize) -> f64) -> Self::Vector;
-    /// Matrix from a function of row and column.
-    fn matrix(component: impl FnMut(usize, usize) -> f64) -> Self::Matrix;
     /// Storage index of tensor component (a, b), `a` and `b` in 0..3; `None` where it is zero in plane strain.
     fn tensor_index(a: usize, b: usize) -> Option<usize> {
         Self::TENSOR_AXES.iter().position(|&(r, c)| (r, c) == (a, b) || (r, c) == (b, a))
@@ -141,7 +137,6 @@ impl Dimension for Dim2 {
     const TENSOR_COUNT: usize = 4;
     const TENSOR_AXES: &'static [(usize, usize)] = &[(0, 0), (1, 1), (2, 2), (0, 1)];
     type Vector = DVec2;
-    type Matrix = DMat2;
     type Axes<T: Value> = [T; 2];
     type Tensor<T: Value> = [T; 4];
     type AxisColumns = [Vec<f64>; 2];
@@ -151,11 +146,6 @@ impl Dimension for Dim2 {
     fn vector(mut component: impl FnMut(usize) -> f64) -> DVec2 {
         DVec2::new(component(0), component(1))
     }
-
-    #[inline]
-    fn matrix(mut component: impl FnMut(usize, usize) -> f64) -> DMat2 {
-        DMat2::from_cols_array_2d(&std::array::from_fn(|c| std::array::from_fn(|r| component(r, c))))
-    }
 }
 
 impl Dimension for Dim3 {
@@ -163,7 +153,6 @@ impl Dimension for Dim3 {
     const TENSOR_COUNT: usize = 6;
     const TENSOR_AXES: &'static [(usize, usize)] = &[(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
     type Vector = DVec3;
-    type Matrix = DMat3;
     type Axes<T: Value> = [T; 3];
     type Tensor<T: Value> = [T; 6];
     type AxisColumns = [Vec<f64>; 3];
@@ -172,11 +161,6 @@ impl Dimension for Dim3 {
     #[inline(always)]
     fn vector(mut component: impl FnMut(usize) -> f64) -> DVec3 {
         DVec3::new(component(0), component(1), component(2))
-    }
-
-    #[inline]
-    fn matrix(mut component: impl FnMut(usize, usize) -> f64) -> DMat3 {
-        DMat3::from_cols_array_2d(&std::array::from_fn(|c| std::array::from_fn(|r| component(r, c))))
     }
 }
 
@@ -191,11 +175,5 @@ mod tests {
             assert_eq!(Dim3::tensor_index(b, a), Some(k));
         }
         assert_eq!(Dim2::tensor_index(0, 2), None, "no shear out of the plane in plane strain");
-    }
-
-    #[test]
-    fn matrices_are_filled_by_row_and_column() {
-        let m = Dim2::matrix(|r, c| (10 * r + c) as f64);
-        assert_eq!(m * DVec2::X, DVec2::new(0.0, 10.0), "first column");
     }
 }

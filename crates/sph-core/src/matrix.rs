@@ -88,11 +88,6 @@ impl<D: Dimension> SquareMatrix<D> {
         let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
         self[(r1, c1)] * self[(r2, c2)] - self[(r1, c2)] * self[(r2, c1)]
     }
-
-    /// The matrix of the public interface.
-    pub fn to_public(self) -> D::Matrix {
-        D::matrix(|r, c| self[(r, c)])
-    }
 }
 
 impl<D: Dimension> Index<(usize, usize)> for SquareMatrix<D> {

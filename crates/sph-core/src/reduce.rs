@@ -104,11 +104,6 @@ pub fn minimum_of(count: usize, value: impl Fn(usize) -> f64 + Sync) -> Option<E
     })
 }
 
-/// Largest value(i) over `0..count`: see [`minimum_of`].
-pub fn maximum_of(count: usize, value: impl Fn(usize) -> f64 + Sync) -> Option<Extreme> {
-    minimum_of(count, |i| -value(i)).map(|e| Extreme { value: -e.value, ..e })
-}
-
 /// Results of chunks, joined along a tree that is cut at whole chunks.
 fn join_chunks<T: Send>(
     range: Range<usize>,
@@ -166,7 +161,6 @@ mod tests {
     fn extremes_know_the_first_index_and_do_not_hide_what_is_not_a_number() {
         let values = [3.0, -1.0, 7.0, -1.0, 7.0];
         assert_eq!(minimum_of(5, |i| values[i]), Some(Extreme { value: -1.0, index: 1 }));
-        assert_eq!(maximum_of(5, |i| values[i]), Some(Extreme { value: 7.0, index: 2 }));
         assert_eq!(minimum_of(0, |_| 0.0), None);
         let n = 5 * CHUNK;
         for bad in [0, 1, CHUNK - 1, CHUNK, n - 1] {

@@ -5,7 +5,7 @@ mod common;
 use common::{box_of, random};
 use proptest::prelude::*;
 use rand::RngExt;
-use sph_core::lanes::LANES;
+use sph_core::lanes::{InstructionSet, LANES};
 use sph_core::neighbors::{NeighborLists, Reach, TILE, brute_force, kd_tree};
 use sph_core::{Components, Dim2, Dim3, Dimension, Domain, Vector};
 
@@ -113,8 +113,15 @@ fn searches_agree<D: Dimension>(scene: &Scene<D>, factor: f64, skin: f64) -> Res
     let plain = brute_force::pairs(&scene.position, &scene.size, &scene.domain, cut);
     let tree = kd_tree::pairs(&scene.position, &scene.size, &scene.domain, cut).unwrap();
     prop_assert_eq!(&tree, &plain);
-    let lists =
-        NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, Reach { factor, skin });
+    let reach = Reach { factor, skin };
+    let lists = NeighborLists::<D>::build(&scene.position, &scene.size, &scene.domain, reach);
+    for instructions in InstructionSet::available() {
+        let mut with = NeighborLists::<D>::default();
+        with.rebuild_with(instructions, &scene.position, &scene.size, &scene.domain, reach);
+        let block = |lists: &NeighborLists<D>, b: usize| lists.block(b).to_vec();
+        let differs = (0..lists.n_padded() / LANES).find(|&b| block(&lists, b) != block(&with, b));
+        prop_assert_eq!(differs, None, "a block with {:?}", instructions);
+    }
     let mut listed = listed_pairs(&lists);
     prop_assert_eq!(&listed, &image_pairs(scene, cut));
     let mut twice: Vec<(u32, u32)> = pairs_listed_once(&lists).iter().flat_map(|&p| [p, p]).collect();

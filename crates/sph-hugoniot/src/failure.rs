@@ -45,6 +45,7 @@ fn place(window: &Window<Dim2>, error: &StepError) -> Option<[f64; 2]> {
             let i = particles.id.iter().position(|id| id == particle)?;
             [particles.position[0][i], particles.position[1][i]]
         }
+        StepError::Particle(_) | StepError::Empty | StepError::Limit { .. } => return None,
     };
     place.iter().all(|x| x.is_finite()).then_some(place)
 }

@@ -64,8 +64,15 @@ impl Material {
     /// Longitudinal sound speed `c_l = √(c_b² + 4G/(3ρ))` [m/s].
     #[inline]
     pub fn longitudinal_sound_speed(&self, density: f64, specific_internal_energy: f64) -> f64 {
+        self.longitudinal_sound_speed_with(1.0, density, specific_internal_energy)
+    }
+
+    /// Longitudinal sound speed [m/s] of a point with voids of distension `a`: c_b is that of the solid between them, at the
+    /// density a ρ.
+    #[inline]
+    pub fn longitudinal_sound_speed_with(&self, distension: f64, density: f64, energy: f64) -> f64 {
         let shear = 4.0 / 3.0 * self.strength.shear_modulus() / density;
-        (self.bulk_sound_speed_squared(density, specific_internal_energy) + shear).sqrt()
+        (self.bulk_sound_speed_squared(distension * density, energy) + shear).sqrt()
     }
 
     /// Transverse sound speed `c_t = √(G/ρ)` [m/s]; zero for a fluid.

@@ -1,4 +1,5 @@
-//! What a simulation checks before it begins: settings, materials, periods, particles.
+//! What a simulation checks before it begins: settings, materials, periods, particles; and particles again where they were
+//! changed from outside.
 
 use sph_core::dimension::Components;
 use sph_core::domain::Domain;
@@ -32,7 +33,15 @@ pub(crate) fn check<D: SolidDimension>(
             return Err(SetupError::Period { axis, period });
         }
     }
-    (0..particles.len()).try_for_each(|i| check_particle(particles, i, materials.len()))
+    check_particles(particles, materials.len())
+}
+
+/// Fails with the first particle that cannot be, among those of `count` materials.
+pub(crate) fn check_particles<D: SolidDimension>(
+    particles: &Particles<D>,
+    count: usize,
+) -> Result<(), SetupError> {
+    (0..particles.len()).try_for_each(|i| check_particle(particles, i, count))
 }
 
 fn check_particle<D: SolidDimension>(

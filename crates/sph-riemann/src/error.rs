@@ -104,6 +104,18 @@ pub enum StepError {
         /// Specific internal energy [J/kg].
         specific_internal_energy: f64,
     },
+    /// Particles were changed from outside, and one of them cannot be.
+    #[error("particles were changed before this step, and {0}")]
+    Particle(SetupError),
+    /// There is nothing to move.
+    #[error("there are no particles")]
+    Empty,
+    /// The longest step that the caller allows is no length of time.
+    #[error("the step may be at most {limit} s long: that must be a number above zero")]
+    Limit {
+        /// What the caller allows [s].
+        limit: f64,
+    },
     /// The time step has fallen to nothing.
     #[error(
         "the time step fell to {time_step:.3e} s at t = {time:.6e} s, limited by particle {particle} with a signal speed \

@@ -41,6 +41,8 @@ pub struct Simulation<D: SolidDimension> {
     pub(crate) lists_valid: bool,
     /// How much of what the lists allow particles have moved against each other.
     pub(crate) motion_share: f64,
+    /// True until particles are lent out to be changed.
+    pub(crate) is_checked: bool,
     /// True if the last update has left the records behind that the next step begins with.
     pub(crate) is_prepared: bool,
     pub(crate) scratch: Scratch,
@@ -101,6 +103,7 @@ impl<D: SolidDimension> Simulation<D> {
             lists: NeighborLists::default(),
             lists_valid: false,
             motion_share: 0.0,
+            is_checked: true,
             is_prepared: false,
             scratch: Scratch::default(),
             stage_times: StageTimes::default(),
@@ -121,7 +124,10 @@ impl<D: SolidDimension> Simulation<D> {
     /// One step, as long as the Courant number allows.
     ///
     /// # Errors
-    /// A particle whose state cannot be, or a time step that has fallen to nothing.
+    /// A particle whose state cannot be, no particles at all, or a time step that has fallen to nothing.
+    ///
+    /// # Panics
+    /// As [`NeighborLists::build`].
     pub fn step(&mut self) -> Result<StepReport<D>, StepError> {
         self.step_at_most(f64::INFINITY)
     }
@@ -129,8 +135,12 @@ impl<D: SolidDimension> Simulation<D> {
     /// One step, not longer than `limit` [s].
     ///
     /// # Errors
+    /// As [`Simulation::step`]; a limit that is not above zero.
+    ///
+    /// # Panics
     /// As [`Simulation::step`].
     pub fn step_at_most(&mut self, limit: f64) -> Result<StepReport<D>, StepError> {
+        self.check_step(limit)?;
         let mut clock = Instant::now();
         let rebuilt = self.lists_stale();
         if rebuilt {
@@ -191,16 +201,10 @@ impl<D: SolidDimension> Simulation<D> {
         &self.particles
     }
 
-    /// The particles, to insert, remove and change: lists are rebuilt before the next step.
+    /// The particles, to insert, remove and change: the next step checks them and rebuilds the lists.
     pub fn particles_mut(&mut self) -> &mut Particles<D> {
-        (self.lists_valid, self.is_prepared) = (false, false);
+        (self.lists_valid, self.is_prepared, self.is_checked) = (false, false, false);
         &mut self.particles
-    }
-
-    /// The velocities, to change their values only: lists stay.
-    pub fn velocities_mut(&mut self) -> &mut D::AxisColumns {
-        self.is_prepared = false;
-        &mut self.particles.velocity
     }
 
     /// Adds one velocity [m/s] to every particle: a change of frame.
@@ -221,11 +225,12 @@ impl<D: SolidDimension> Simulation<D> {
         prepare::pressure(&self.particles, self.materials(), i)
     }
 
-    /// Longitudinal sound speed of particle `i` [m/s].
+    /// Longitudinal sound speed of particle `i` [m/s], that of the contacts and of the time step: where voids have grown, c_b is
+    /// that of the solid between them.
     pub fn longitudinal_sound_speed(&self, i: usize) -> f64 {
-        let material = &self.materials()[self.particles.material[i] as usize];
-        material
-            .longitudinal_sound_speed(self.particles.density[i], self.particles.specific_internal_energy[i])
+        let p = &self.particles;
+        let material = &self.materials()[p.material[i] as usize];
+        material.longitudinal_sound_speed_with(p.distension[i], p.density[i], p.specific_internal_energy[i])
     }
 
     /// The materials.

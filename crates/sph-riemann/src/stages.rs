@@ -7,6 +7,7 @@ use sph_core::memory::resize_scratch;
 use sph_core::neighbors::cell_grid::sort_particles;
 use sph_core::neighbors::{NeighborLists, Reach};
 
+use crate::check::check_particles;
 use crate::dimension::SolidDimension;
 use crate::error::StepError;
 use crate::pass::{Deltas, Pass, Sizes, Smoothing, TilePairs};
@@ -57,12 +58,29 @@ impl Scratch {
 }
 
 impl<D: SolidDimension> Simulation<D> {
+    /// Fails if a step of at most `limit` [s] cannot be made: with the first particle that cannot be, if any may have been changed
+    /// from outside.
+    pub(crate) fn check_step(&mut self, limit: f64) -> Result<(), StepError> {
+        if limit.is_nan() || limit <= 0.0 {
+            return Err(StepError::Limit { limit });
+        }
+        if self.particles.is_empty() {
+            return Err(StepError::Empty);
+        }
+        if !self.is_checked {
+            check_particles(&self.particles, self.matter.materials().len()).map_err(StepError::Particle)?;
+            self.is_checked = true;
+        }
+        Ok(())
+    }
+
     /// Sorts the particles in cell order and finds their neighbors.
     pub(crate) fn rebuild_lists(&mut self) {
         let reach = self.reach();
         let largest = self.particles.size.iter().fold(0.0_f64, |a, &b| a.max(b));
         sort_particles(&mut self.particles, &self.domain, 2.0 * reach.factor * largest + reach.skin);
-        self.lists.rebuild(&self.particles.position, &self.particles.size, &self.domain, reach);
+        let (positions, sizes) = (&self.particles.position, &self.particles.size);
+        self.lists.rebuild_with(self.instructions, positions, sizes, &self.domain, reach);
         self.fit_scratch();
         self.stage_times.rebuilds += 1;
     }
@@ -77,7 +95,9 @@ impl<D: SolidDimension> Simulation<D> {
 
     /// Lists as they were built for the particles at the given positions.
     pub(crate) fn find_neighbors(&mut self, positions: &D::AxisColumns) {
-        self.lists = NeighborLists::build(positions, &self.particles.size, &self.domain, self.reach());
+        self.lists = NeighborLists::default();
+        let (sizes, reach) = (&self.particles.size, self.reach());
+        self.lists.rebuild_with(self.instructions, positions, sizes, &self.domain, reach);
         self.fit_scratch();
     }
 
@@ -225,6 +245,7 @@ impl<D: SolidDimension> Simulation<D> {
             velocity: &self.particles.velocity,
             mass: &self.particles.mass,
             half_step: 0.5 * time_step,
+            instructions: self.instructions,
         };
         let of_sums = ..self.lists.n_padded() * D::SUM_LINES;
         if !deltas.fill(&s.rows, &mut s.state[of_sums], &mut s.sides) {

@@ -58,7 +58,7 @@ impl<D: SolidDimension> Passes<D> {
         let pass = Pass { records: &sides, ..pass };
         pass.contacts(Some(Limiter::VanLeer), &mut sums, &mut pairs);
         let tiles = sums.chunks_mut(TILE * D::SUM_LINES).enumerate();
-        tiles.for_each(|(t, own)| collect(lists, &pairs, t, own));
+        tiles.for_each(|(t, own)| collect(lists, &pairs, instructions, t, own));
         Self { simulation, state, sides, rows, sums, size }
     }
 

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 use crate::dimension::Dimension;
 use crate::domain::Domain;
-use crate::lanes::LANES;
+use crate::lanes::{InstructionSet, LANES};
 use cell_grid::Workspace;
 use draft::Draft;
 pub use halo::Halo;
@@ -60,6 +60,10 @@ pub struct Reach {
 
 impl<D: Dimension> NeighborLists<D> {
     /// Builds lists for particles inside the box (on periodic axes), best sorted in cell order.
+    ///
+    /// # Panics
+    /// If the pairs of a tile meet more than 65,000 particles of other tiles: sizes then differ by so much that a large particle
+    /// sees that many small ones.
     pub fn build(position: &D::AxisColumns, size: &[f64], domain: &Domain<D>, reach: Reach) -> Self {
         let mut lists = Self::default();
         lists.rebuild(position, size, domain, reach);
@@ -67,7 +71,25 @@ impl<D: Dimension> NeighborLists<D> {
     }
 
     /// Builds the lists anew, in the memory that they have.
+    ///
+    /// # Panics
+    /// As [`NeighborLists::build`].
     pub fn rebuild(&mut self, position: &D::AxisColumns, size: &[f64], domain: &Domain<D>, reach: Reach) {
+        self.rebuild_with(InstructionSet::detect(), position, size, domain, reach);
+    }
+
+    /// The same with the given set of instructions: the lists do not depend on it.
+    ///
+    /// # Panics
+    /// As [`NeighborLists::build`], and if the machine does not have the set.
+    pub fn rebuild_with(
+        &mut self,
+        instructions: InstructionSet,
+        position: &D::AxisColumns,
+        size: &[f64],
+        domain: &Domain<D>,
+        reach: Reach,
+    ) {
         self.n_particles = size.len();
         let largest = size.iter().fold(0.0_f64, |a, &b| a.max(b));
         let farthest = 2.0 * reach.factor * largest + reach.skin;
@@ -76,7 +98,10 @@ impl<D: Dimension> NeighborLists<D> {
         let n_tiles = size.len().div_ceil(TILE);
         self.tiles.resize_with(n_tiles, TileLists::default);
         let tiles = self.tiles.par_iter_mut().enumerate();
-        tiles.for_each_init(|| Draft::new(n_tiles), |draft, (t, lists)| search.tile(t, draft, lists));
+        tiles.for_each_init(
+            || Draft::new(n_tiles),
+            |draft, (t, lists)| search.tile(instructions, t, draft, lists),
+        );
         tile_lists::connect(&mut self.tiles);
         self.reference.resize_with(D::COUNT, Vec::new);
         (0..D::COUNT).for_each(|a| self.reference[a].clone_from(&position[a]));
@@ -132,11 +157,6 @@ impl<D: Dimension> NeighborLists<D> {
     /// Records listed for a particle (without itself).
     pub fn neighbors(&self, i: usize) -> impl Iterator<Item = u32> + '_ {
         self.block(i / LANES).iter().map(move |slot| slot[i % LANES]).filter(move |&j| j as usize != i)
-    }
-
-    /// Number of listed pairs, each counted both ways.
-    pub fn n_pairs(&self) -> usize {
-        (0..self.n_particles).map(|i| self.neighbors(i).count()).sum()
     }
 
     /// Bytes that the lists take.

@@ -9,7 +9,7 @@
 //! written down together. There is no branch for a single candidate: machines guessed half of those wrong.
 
 use crate::dimension::Dimension;
-use crate::lanes::{LANES, LaneKernel, Lanes, dispatch};
+use crate::lanes::{InstructionSet, LANES, LaneKernel, Lanes, dispatch_with};
 use crate::neighbors::cell_grid::{CellSortedPoints, Workspace};
 use crate::neighbors::draft::{Draft, Near, Row};
 use crate::neighbors::{Halo, Reach, TILE, TileLists};
@@ -64,8 +64,8 @@ impl<'a, D: Dimension> Search<'a, D> {
     }
 
     /// Lists of the particles of a tile.
-    pub fn tile(&self, tile: usize, draft: &mut Draft, lists: &mut TileLists) {
-        dispatch(TileSearch { search: self, tile, draft });
+    pub fn tile(&self, instructions: InstructionSet, tile: usize, draft: &mut Draft, lists: &mut TileLists) {
+        dispatch_with(instructions, TileSearch { search: self, tile, draft });
         draft.finish(tile, |record| self.owner(record), lists);
     }
 

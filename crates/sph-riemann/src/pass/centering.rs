@@ -14,7 +14,7 @@
 
 use rayon::prelude::*;
 use sph_core::dimension::Components;
-use sph_core::lanes::{LANES, LaneKernel, Lanes, Line, prefetch};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, prefetch};
 use sph_core::neighbors::{NeighborLists, TILE, TILE_BLOCKS};
 
 use super::ahead::Ahead;
@@ -46,6 +46,8 @@ pub struct Deltas<'a, D: SolidDimension> {
     pub mass: &'a [f64],
     /// Half the time step [s].
     pub half_step: f64,
+    /// Instructions to use.
+    pub instructions: InstructionSet,
 }
 
 impl<D: SolidDimension> Deltas<'_, D> {
@@ -62,7 +64,7 @@ impl<D: SolidDimension> Deltas<'_, D> {
             .zip(rows.par_chunks(TILE_BLOCKS * Row::count::<D>()))
             .enumerate();
         tiles.for_each(|(t, ((sums, sides), own_rows))| {
-            collect::<D>(self.lists, self.pairs, t, sums);
+            collect::<D>(self.lists, self.pairs, self.instructions, t, sums);
             ask_ahead::<D>(self.lists, self.pairs, t, sums);
             for (b, own_rows) in own_rows.chunks_exact(Row::count::<D>()).enumerate() {
                 self.ask_for_marked(t, b, rows, sums, sides);

@@ -78,10 +78,12 @@ impl<D: SolidDimension> Pass<'_, D> {
     /// where a rule puts I for L⁻¹.
     ///
     /// # Panics
-    /// If there are fewer records than the lists name: the pair loops read them unchecked.
+    /// If there are fewer records than the lists name: the pair loops read them unchecked; or if there are not as many rows,
+    /// sums and tiles as in the lists.
     pub fn gradients(&self, flags: Option<&[f64]>, sides: &mut [Line], rows: &mut [Line]) {
         self.check_records(D::STATE_LINES);
         let own = &mut sides[..self.lists.n_padded() * D::SIDES_LINES];
+        assert_eq!(rows.len(), self.lists.n_padded() / LANES * Row::count::<D>());
         let rows = rows.par_chunks_mut(TILE_BLOCKS * Row::count::<D>());
         rows.zip(own.par_chunks_mut(TILE * D::SIDES_LINES)).enumerate().for_each(|(index, (rows, sides))| {
             D::run(self, Tile { index, work: Work::Gradients { flags, sides, rows } });
@@ -129,6 +131,7 @@ impl<D: SolidDimension> Pass<'_, D> {
         work: impl Fn(usize, &mut TilePairs, &mut [Line], &mut [Line]) -> bool + Sync,
     ) {
         assert_eq!(sums.len(), self.lists.n_padded() * D::SUM_LINES);
+        assert_eq!(pairs.len(), self.lists.tiles().len());
         let tiles = sums.par_chunks_mut(TILE * D::SUM_LINES).zip(pairs.par_iter_mut()).enumerate();
         tiles.for_each(|(index, (own, pairs))| {
             sums::with_buffer(self.lists.tiles()[index].n_targets() * D::SUM_LINES, |buffer| {
@@ -184,7 +187,7 @@ fn own_indices(block: usize) -> [u32; LANES] {
 /// Line `line` of eight records as the first numbers of `record` from `8 line` on.
 ///
 /// # Safety
-/// As [`Lanes::load_records`].
+/// As [`Part::load_records`].
 #[inline(always)]
 unsafe fn load_line<L: Part, R: Components<L>>(
     record: &mut R,

@@ -7,9 +7,7 @@
 
 use std::cell::RefCell;
 
-use sph_core::lanes::{
-    InstructionSet, LANES, LaneKernel, Lanes, Line, Part, dispatch, dispatch_with, prefetch,
-};
+use sph_core::lanes::{InstructionSet, LANES, LaneKernel, Lanes, Line, Part, dispatch_with, prefetch};
 use sph_core::neighbors::{NeighborLists, TILE, TileLists};
 
 use crate::dimension::SolidDimension;
@@ -118,6 +116,7 @@ impl LaneKernel for AddRecords<'_> {
 pub fn collect<D: SolidDimension>(
     lists: &NeighborLists<D>,
     pairs: &[TilePairs],
+    instructions: InstructionSet,
     tile: usize,
     own: &mut [Line],
 ) {
@@ -131,7 +130,7 @@ pub fn collect<D: SolidDimension>(
         let range = incoming.first as usize..incoming.end as usize;
         let sums = &foreign[range.start * stride..range.end * stride];
         let particles = Some(&lists.tiles()[source].foreign()[range]);
-        dispatch(AddRecords { into: own, particles, first: tile * TILE, sums, stride });
+        dispatch_with(instructions, AddRecords { into: own, particles, first: tile * TILE, sums, stride });
     }
 }
 

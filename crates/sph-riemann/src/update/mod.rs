@@ -184,7 +184,7 @@ fn for_each_tile<D: SolidDimension>(
         packing_excess: &particles.packing_excess,
     };
     let run = |t: usize, tile: Written<'_>| {
-        collect(lists, pairs, t, tile.sums);
+        collect(lists, pairs, instructions, t, tile.sums);
         ask_ahead(lists, pairs, t, tile.sums);
         // SAFETY: the parallel iterators visit every tile once, and these are the only parts taken.
         let columns = unsafe { TileColumns::<D>::take(&columns, t) };

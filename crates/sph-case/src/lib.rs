@@ -35,6 +35,7 @@ mod syntax;
 mod tree;
 pub mod units;
 
+use std::io::Read;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -46,26 +47,37 @@ pub use field::Field;
 /// Largest case file that is read [bytes].
 const MAX_FILE: u64 = 1 << 20;
 
-/// The text of a case file.
+/// The text of a case file, without the mark that some editors put at its beginning.
 ///
 /// # Errors
 /// A file that cannot be read, is too large, or is no text.
 pub fn text_of(path: &Path) -> Result<String, CaseError> {
-    let shown = path.display().to_string();
-    let refuse = |message: String, hint: Option<String>| {
-        let fault = Fault::new(0..0, message);
-        let faults = vec![hint.into_iter().fold(fault, Fault::hint)];
-        CaseError { path: shown.clone(), text: String::new(), faults, left_out: 0 }
+    let refuse = |text: String, span: Span, message: String, hint: Option<String>| {
+        let faults = vec![hint.into_iter().fold(Fault::new(span, message), Fault::hint)];
+        CaseError { path: path.display().to_string(), text, faults, left_out: 0 }
     };
-    let unreadable =
-        |error: std::io::Error| refuse(format!("the case file cannot be read: {error}"), hint(path, &error));
-    let metadata = std::fs::metadata(path).map_err(unreadable)?;
-    if metadata.len() > MAX_FILE {
-        let size = metadata.len();
-        return Err(refuse(format!("the case file has {size} bytes; at most {MAX_FILE} are read"), None));
+    let unreadable = |error: std::io::Error| {
+        refuse(String::new(), 0..0, format!("the case file cannot be read: {error}"), hint(path, &error))
+    };
+    let mut bytes = Vec::new();
+    // Not by the length that the system tells: a device or a pipe has none, and may never end.
+    let mut file = std::fs::File::open(path).map_err(unreadable)?.take(MAX_FILE + 1);
+    file.read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_FILE {
+        let message =
+            format!("the case file has more than {MAX_FILE} bytes, which are the most that are read");
+        return Err(refuse(String::new(), 0..0, message, None));
     }
-    let bytes = std::fs::read(path).map_err(unreadable)?;
-    String::from_utf8(bytes).map_err(|e| refuse(format!("the case file is not UTF-8 text: {e}"), None))
+    let text = String::from_utf8(bytes).map_err(|error| {
+        // The text up to there is the same with what cannot be read made visible.
+        let (at, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
+        let shown = String::from_utf8_lossy(bytes).into_owned();
+        let message = format!("the case file is not UTF-8 text: byte {:#04x} means nothing here", bytes[at]);
+        let is_utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+        let hint = if is_utf16 { "this looks like UTF-16: save it as UTF-8" } else { "save it as UTF-8" };
+        refuse(shown, at..at + char::REPLACEMENT_CHARACTER.len_utf8(), message, Some(hint.into()))
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map(String::from).unwrap_or(text))
 }
 
 /// From where a file that is not there was looked for.

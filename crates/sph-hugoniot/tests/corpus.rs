@@ -7,6 +7,7 @@ use sph_hugoniot::config;
 fn files(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(folder);
     let mut list: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    list.retain(|path| path.extension().is_some_and(|e| e == "ron"));
     list.sort();
     assert!(list.len() >= 3);
     list

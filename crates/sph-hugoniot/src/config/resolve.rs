@@ -38,7 +38,7 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
         .and_then(|m| r.medium(m, &span_of(&schema.medium), surroundings));
     let points =
         schema.points.required("points", whole, faults).and_then(|p| r.points(p, &span_of(&schema.points)));
-    let data = r.data(&schema.data);
+    let data = r.data(&schema.data, folder);
     let scheme = r.group(&schema.scheme, |s| r.scheme(s));
     let parts = medium.as_ref().zip(materials.as_deref().and_then(<[_]>::first));
     let automatic = |place: f64| {

@@ -1,12 +1,13 @@
 //! Points and measured data of a case: lists, ranges, adaptive sweeps.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::case::{DataSource, Refinement};
 use super::field::Field;
 use super::resolve::{PARTICLE_VELOCITIES, Resolver, span_of};
 use super::schema::{AdaptiveSchema, DataSchema, PointsSchema, RangeSchema};
 use super::units::{Velocity, VelocityKind, show};
+use crate::curve::measured::{self, DataError};
 use sph_case::Span;
 
 /// Most points of a case.
@@ -108,19 +109,25 @@ impl Resolver<'_> {
         Some((evenly(ends?, initial), Some(Refinement { tolerance: tolerance?, max_points })))
     }
 
-    /// Measured curves, in the order of the file.
-    pub(super) fn data(&self, data: &Field<Vec<Field<DataSchema>>>) -> Option<Vec<DataSource>> {
+    /// Measured curves, in the order of the file; their files are looked for in `folder`.
+    pub(super) fn data(
+        &self,
+        data: &Field<Vec<Field<DataSchema>>>,
+        folder: &Path,
+    ) -> Option<Vec<DataSource>> {
         match data {
             Field::Absent => Some(Vec::new()),
             Field::Bad(_) => None,
             Field::Good(list, _) => {
-                let sources: Vec<Option<DataSource>> = list.iter().map(|s| self.data_source(s)).collect();
+                let sources: Vec<Option<DataSource>> =
+                    list.iter().map(|s| self.data_source(s, folder)).collect();
                 sources.into_iter().collect()
             }
         }
     }
 
-    fn data_source(&self, source: &Field<DataSchema>) -> Option<DataSource> {
+    /// A curve, with what is wrong with its file.
+    fn data_source(&self, source: &Field<DataSchema>, folder: &Path) -> Option<DataSource> {
         match source.get()? {
             DataSchema::Boade1970 => Some(DataSource::Boade1970),
             DataSchema::Csv(csv) => {
@@ -133,7 +140,20 @@ impl Resolver<'_> {
                     );
                     return None;
                 }
-                Some(DataSource::Csv { file: PathBuf::from(file), name: csv.name.get().cloned() })
+                let name = csv.name.get();
+                if let Err(error) = measured::load(&folder.join(file), name.map(String::as_str)) {
+                    let hint = match &error {
+                        DataError::Unreadable { .. } => "a CSV file, its path relative to the case file",
+                        DataError::Faults { .. } => {
+                            "columns `u_p [m/s]` and `u_s [m/s]`; `u_p_error`, `u_s_error`, `u_ahead` and `source` may be there"
+                        }
+                    };
+                    for message in error.to_string().lines() {
+                        self.refuse(span_of(&csv.file), message.into(), hint);
+                    }
+                    return None;
+                }
+                Some(DataSource::Csv { file: PathBuf::from(file), name: name.cloned() })
             }
         }
     }

@@ -17,6 +17,7 @@
 //! Columns may stand in any order; others are refused, so that a misspelt one is not lost. Units stand in brackets in
 //! the header. All faults of a file are told at once, each with line and column.
 
+use std::io::Read;
 use std::path::Path;
 
 use crate::config::fault::name_hint;
@@ -93,11 +94,15 @@ pub enum DataError {
 pub fn load(path: &Path, name: Option<&str>) -> Result<DataSet, DataError> {
     let shown = path.display().to_string();
     let unreadable = |reason: String| DataError::Unreadable { path: shown.clone(), reason };
-    let size = std::fs::metadata(path).map_err(|e| unreadable(e.to_string()))?.len();
-    if size > MAX_FILE {
-        return Err(unreadable(format!("it has {size} bytes; at most {MAX_FILE} are read")));
+    let mut bytes = Vec::new();
+    // Not by the length that the system tells: a device or a pipe has none.
+    let read = std::fs::File::open(path).and_then(|file| file.take(MAX_FILE + 1).read_to_end(&mut bytes));
+    read.map_err(|e| unreadable(e.to_string()))?;
+    if bytes.len() as u64 > MAX_FILE {
+        return Err(unreadable(format!(
+            "it has more than {MAX_FILE} bytes, which are the most that are read"
+        )));
     }
-    let bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
     let text = String::from_utf8(bytes).map_err(|e| unreadable(format!("it is not UTF-8 text: {e}")))?;
     let points = parse(&text).map_err(|faults| DataError::Faults { path: shown.clone(), faults })?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -119,6 +124,12 @@ pub fn parse(text: &str) -> Result<Vec<DataPoint>, Vec<DataFault>> {
         let message = "there is no header; hint: u_p [m/s], u_s [m/s], u_s_error [m/s], source".to_string();
         return Err(vec![DataFault { line: 1, column: 1, message }]);
     };
+    if header.contains(';') && !header.contains(',') {
+        let column = header.chars().position(|c| c == ';').map_or(1, |k| k + 1);
+        let message =
+            "there is one column only; hint: cells are separated by commas, not by semicolons".to_string();
+        return Err(vec![DataFault { line, column, message }]);
+    }
     let columns = header_columns(line, header, &mut faults);
     let mut points = Vec::new();
     for (line, row) in rows {
@@ -195,6 +206,8 @@ fn point(line: usize, row: &str, columns: &[Kind], faults: &mut Vec<DataFault>) 
         return None;
     }
     let before = faults.len();
+    // Values of a column whose unit is not known say nothing against each other.
+    let is_whole = [0, 1].iter().all(|which| columns.iter().flatten().any(|(known, _)| known == which));
     let mut values = [0.0; COLUMNS.len()];
     let mut source = String::new();
     for ((column, cell), kind) in cells.iter().zip(columns) {
@@ -209,15 +222,15 @@ fn point(line: usize, row: &str, columns: &[Kind], faults: &mut Vec<DataFault>) 
         }
     }
     let [u_p, u_s, u_p_error, u_s_error, ahead, _] = values;
-    if faults.len() == before && u_s <= u_p {
+    if is_whole && faults.len() == before && u_s <= u_p {
         let message = format!("u_s = {u_s} m/s does not exceed u_p = {u_p} m/s: no wave compresses so far");
         faults.push(DataFault { line, column: 1, message });
     }
-    if faults.len() == before && u_p <= ahead {
+    if is_whole && faults.len() == before && u_p <= ahead {
         let message = format!("u_p = {u_p} m/s does not exceed u_ahead = {ahead} m/s");
         faults.push(DataFault { line, column: 1, message });
     }
-    (faults.len() == before).then_some(DataPoint {
+    (is_whole && faults.len() == before).then_some(DataPoint {
         particle_velocity: u_p - ahead,
         shock_velocity: u_s - ahead,
         particle_velocity_error: u_p_error,
@@ -238,8 +251,10 @@ fn value(which: usize, cell: &str, size: f64) -> Result<f64, String> {
     if value.is_finite() && good && value < 1e6 {
         return Ok(value);
     }
+    // As it was written, where it is too large for a number.
+    let told = if value.is_finite() { format!("{value} m/s") } else { cell.to_string() };
     Err(format!(
-        "{name} = {value} m/s is out of range; hint: {} 0, below 1e6 m/s",
+        "{name} = {told} is out of range; hint: {} 0, below 1e6 m/s",
         if which < 2 { "above" } else { "from" }
     ))
 }
@@ -300,6 +315,16 @@ mod tests {
     }
 
     #[test]
+    fn values_without_a_unit_are_not_compared() {
+        for header in ["u_p,u_s", "u_p [m/s],u_s"] {
+            let faults = parse(&format!("{header}\n100,600\n")).unwrap_err();
+            assert!(faults.iter().all(|f| f.line == 1), "{header}: {faults:?}");
+        }
+        let told = parse("u_p [m/s],u_s [m/s]\n100,1e400\n").unwrap_err()[0].to_string();
+        assert_eq!(told, "2:5: u_s = 1e400 is out of range; hint: above 0, below 1e6 m/s");
+    }
+
+    #[test]
     fn headers_are_checked() {
         for (header, part) in [
             ("u_p,u_s [m/s]", "1:1: `u_p` has no unit"),
@@ -308,6 +333,7 @@ mod tests {
             ("u_p [m/s],u_p [m/s]", "1:11: `u_p` stands in the header twice"),
             ("u_p [m/s]", "`u_s` is missing"),
             ("u_p [m/s,u_s", "no closing bracket"),
+            ("u_p [m/s];u_s [m/s]", "1:10: there is one column only; hint: cells are separated by commas"),
             ("", "there is no header"),
             ("u_p [m/s],u_s [m/s]", "no points"),
         ] {

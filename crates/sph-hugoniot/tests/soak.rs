@@ -17,6 +17,8 @@ use sph_riemann::StageTimes;
 
 /// Kills of each case, where the environment does not say otherwise.
 const KILLS: u64 = 4;
+/// So many kills cannot all come before there is anything to damage.
+const MANY: u64 = 20;
 /// Where a checkpoint has its version: a file of another one is refused, not damaged.
 const VERSION: Range<usize> = 8..12;
 
@@ -223,6 +225,7 @@ fn soak(name: &str, case: &str, seed: u64) {
     let (kills, seed) = (number("SOAK_KILLS", KILLS), number("SOAK_SEED", seed));
     let mut soak = Soak::new(case, seed);
     soak.run(kills);
+    assert!(kills < MANY || soak.damaged > 0, "{name}: {kills} kills, and no file was damaged");
     println!(
         "{name}: {} kills and {} damaged files in {} runs, seed {seed}: same bytes",
         soak.kills, soak.damaged, soak.rounds

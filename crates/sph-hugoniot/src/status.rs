@@ -107,6 +107,8 @@ struct Board {
     /// When each point began, and the cells that it had swept then.
     begun: Vec<(f64, Instant, f64)>,
     written: Option<Instant>,
+    /// That the file could not be written has been told.
+    told: bool,
 }
 
 impl StatusBoard {
@@ -125,7 +127,7 @@ impl StatusBoard {
             end: None,
             points: Vec::new(),
         };
-        let state = Mutex::new(Board { status, begun: Vec::new(), written: None });
+        let state = Mutex::new(Board { status, begun: Vec::new(), written: None, told: false });
         Self { path: folder.join(FILE), state }
     }
 
@@ -174,15 +176,17 @@ impl StatusBoard {
         self.write(&mut board, true);
     }
 
-    /// Writes the file, if it is time. That nobody can read it is no reason to stop a run.
+    /// Writes the file, if it is time. That nobody can read it is no reason to stop a run; it is told once.
     fn write(&self, board: &mut Board, now: bool) {
         if !now && board.written.is_some_and(|last| last.elapsed() < INTERVAL) {
             return;
         }
         board.status.updated = unix_seconds(SystemTime::now());
         let text = serde_json::to_string_pretty(&board.status).unwrap_or_default();
-        if let Err(error) = sph_io::write_atomic(&self.path, text.as_bytes()) {
-            tracing::warn!("{error}");
+        if let Err(error) = sph_io::write_atomic(&self.path, text.as_bytes())
+            && !std::mem::replace(&mut board.told, true)
+        {
+            tracing::warn!("{error}; `hugoniot status` does not see how far the run is");
         }
         board.written = Some(Instant::now());
     }

@@ -103,27 +103,31 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     };
     let report = Report::create(&options.folder, case, case_text)?;
     let board = StatusBoard::new(&options.folder, &case.name, &options.go_on);
-    let outcomes = rounds(case, &sample, &report, &board, options, interrupt)?;
-    let finished: Vec<&PointOutcome> = outcomes.iter().collect();
-    let curves = Curves::new(case, &sample, &finished, &data);
-    report.write_curves(&curves)?;
-    let facts = RunFacts {
-        command: sph_io::machine::command(),
-        started: clock::unix_seconds(began),
-        seconds: started.elapsed().as_secs_f64(),
-        threads: options.threads,
-        case_text: case_text.to_owned(),
+    let kept = || -> Result<RunEnd> {
+        let outcomes = rounds(case, &sample, &report, &board, options, interrupt)?;
+        let finished: Vec<&PointOutcome> = outcomes.iter().collect();
+        let curves = Curves::new(case, &sample, &finished, &data);
+        report.write_curves(&curves)?;
+        let facts = RunFacts {
+            command: sph_io::machine::command(),
+            started: clock::unix_seconds(began),
+            seconds: started.elapsed().as_secs_f64(),
+            threads: options.threads,
+            case_text: case_text.to_owned(),
+        };
+        report.write_page(&curves, &sample, &finished, &facts)?;
+        let end = end_of(&finished, interrupt);
+        board.finish(end.word());
+        let seconds = started.elapsed().as_secs_f64();
+        if options.json {
+            println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
+        } else if !options.quiet {
+            print_summary(&curves, &finished, report.folder(), seconds);
+        }
+        Ok(end)
     };
-    report.write_page(&curves, &sample, &finished, &facts)?;
-    let end = end_of(&finished, interrupt);
-    board.finish(end.word());
-    let seconds = started.elapsed().as_secs_f64();
-    if options.json {
-        println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
-    } else if !options.quiet {
-        print_summary(&curves, &finished, report.folder(), seconds);
-    }
-    Ok(end)
+    // Without this word the run would look killed.
+    kept().inspect_err(|_| board.break_off())
 }
 
 /// Makes the folder and holds it for this process; how the run ends if another is at work there.

@@ -23,6 +23,9 @@ pub const FORMAT: u32 = 1;
 /// Least time between two writings.
 const INTERVAL: Duration = Duration::from_secs(1);
 
+/// The end of a run that an error stopped: a full disk, a folder that must not be written to.
+const BROKEN_OFF: &str = "stopped by an error";
+
 /// What a point is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -176,6 +179,12 @@ impl StatusBoard {
         self.write(&mut board, true);
     }
 
+    /// The run at its end by an error, which tells more than that this file, too, could not be written.
+    pub fn break_off(&self) {
+        self.state().told = true;
+        self.finish(BROKEN_OFF);
+    }
+
     /// Writes the file, if it is time. That nobody can read it is no reason to stop a run; it is told once.
     fn write(&self, board: &mut Board, now: bool) {
         if !now && board.written.is_some_and(|last| last.elapsed() < INTERVAL) {
@@ -243,7 +252,7 @@ fn finite(value: f64) -> Option<f64> {
 /// What a look at a folder finds: the file, and whether the run is alive.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Found {
-    /// `running`, `done`, `some failed`, `interrupted`, or `killed`.
+    /// `running`, `done`, `some failed`, `interrupted`, `stopped by an error`, or `killed`.
     pub state: String,
     /// What the run wrote last.
     #[serde(flatten)]
@@ -304,7 +313,7 @@ impl Found {
                 "; process {} is gone, its last word is {age} old\ngo on with: {}",
                 status.process, status.go_on
             ),
-            "interrupted" => format!(" {age} ago\ngo on with: {}", status.go_on),
+            "interrupted" | BROKEN_OFF => format!(" {age} ago\ngo on with: {}", status.go_on),
             _ => format!(" {age} ago"),
         };
         format!("{head}{tail}\n{}", self.table().to_text())
@@ -384,6 +393,13 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("stopped"), "{text}");
+
+        board.break_off();
+        let text = read(folder.path()).unwrap().unwrap().to_text();
+        assert!(
+            text.contains("test: stopped by an error, 1 of 2") && text.contains("go on with: "),
+            "{text}"
+        );
 
         board.finish("done");
         assert_eq!(read(folder.path()).unwrap().unwrap().state, "done");

@@ -101,6 +101,20 @@ fn a_damaged_state_is_told_and_the_one_before_it_taken() {
 }
 
 #[test]
+fn a_run_that_an_error_stopped_does_not_look_killed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("run");
+    // The page cannot be written where a folder is; all before it can.
+    std::fs::create_dir_all(out.join("report.html")).expect("a folder in the way");
+    let (code, said) = finish(hugoniot(&smoke_case(), &out, &["--up", "300"]));
+    assert_eq!(code, Some(1), "{said}");
+    let output = Command::new(env!("CARGO_BIN_EXE_hugoniot")).arg("status").arg(&out).output();
+    let told = String::from_utf8_lossy(&output.expect("the program runs").stdout).into_owned();
+    assert!(told.contains("smoke: stopped by an error, 1 of 1 points ended"), "{told}");
+    assert!(told.contains("go on with: hugoniot run ") && told.contains("--resume"), "{told}");
+}
+
+#[test]
 fn a_status_that_cannot_be_written_is_told_once_and_the_run_goes_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("run");

@@ -11,7 +11,7 @@
 pub mod extrapolate;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use sph_io::plot::{Axis, Figure, Series};
@@ -49,6 +49,9 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
     let mut some_failed = false;
     let mut tables = Vec::new();
     for case in cases {
+        if interrupt.load(Ordering::Relaxed) {
+            return Ok(RunEnd::Interrupted);
+        }
         let size = case.medium.particle_size;
         let folder = folder_of(&options.folder, size);
         if !options.quiet && !options.json {

@@ -1,4 +1,4 @@
-//! The command line of `hugoniot`: what can be typed, and which exit code follows.
+//! The command line of `hugoniot`: what each command does, and which exit code follows.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -6,14 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use clap::{Parser, Subcommand};
-
-use crate::config::PARTICLE_VELOCITIES;
-use crate::config::units::{Length, LengthKind, Velocity, show};
+pub use crate::arguments::{Arguments, Command};
+use crate::config::units::{LengthKind, show};
 use crate::report::curves::load_data;
 use crate::run::{self, Earlier, RunEnd, RunOptions};
-use crate::shell::{self, ColorChoice};
-use crate::{check, config, restart, schema, status, study, template};
+use crate::{check, config, shell, status, study, template};
 
 /// Everything went well.
 pub const SUCCESS: u8 = 0;
@@ -25,162 +22,6 @@ pub const BAD_INPUT: u8 = 2;
 pub const NUMERICAL_FAILURE: u8 = 3;
 /// Stopped by Ctrl-C; what was computed is kept.
 pub const INTERRUPTED: u8 = 130;
-
-const EXAMPLES: &str = "Examples:
-  hugoniot init porous-copper > case.ron     write a commented case file
-  hugoniot check case.ron                    porosity reached, particles, memory, time
-  hugoniot run case.ron                      all points of the case
-  hugoniot run case.ron --up 100,150         two points only
-  hugoniot run case.ron --out results/a --threads 2 --quiet
-  hugoniot run case.ron --resolutions 2um,1um,0.5um
-                                             u_s at vanishing particle size
-  hugoniot run case.ron --resume             go on after Ctrl-C, a crash or a power cut
-  hugoniot status results/porous-copper      how far a run is, from another terminal
-  hugoniot completions bash > ~/.local/share/bash-completion/completions/hugoniot
-
-RUST_LOG=info tells of each point when start-up ends and what each block gives.
-Ctrl-C once: the points keep their states and stop; twice: the process ends at once. --resume goes on either way.
-Exit codes: 0 done, 1 a file could not be read or written, 2 bad input, 3 a point failed, 130 interrupted";
-
-/// From a case file to the shock Hugoniot u_s(u_p) of a porous solid, with uncertainty.
-#[derive(Debug, Parser)]
-#[command(name = "hugoniot", version, after_help = EXAMPLES)]
-pub struct Arguments {
-    /// What to do.
-    #[command(subcommand)]
-    pub command: Command,
-    /// Colors in messages
-    #[arg(long, global = true, value_enum, default_value_t)]
-    pub color: ColorChoice,
-}
-
-/// What to do.
-#[derive(Debug, Subcommand)]
-pub enum Command {
-    /// Write a commented case file to standard output
-    #[command(after_help = "Example:\n  hugoniot init porous-copper > case.ron")]
-    Init {
-        /// Name of the template; without it the names are listed
-        template: Option<String>,
-    },
-    /// Show what a case file resolves to; run nothing
-    #[command(
-        after_help = "Examples:\n  hugoniot check case.ron\n  hugoniot check case.ron --json | jq .porosity_reached"
-    )]
-    Check {
-        /// Case file
-        case: PathBuf,
-        /// As JSON
-        #[arg(long)]
-        json: bool,
-        /// Cores that the time is estimated for; default: all
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-        threads: Option<u16>,
-        /// PNG file for the picture of the sample; default: sample.png in the case's folder of results
-        #[arg(long, value_name = "FILE")]
-        picture: Option<PathBuf>,
-    },
-    /// Run the points of a case; results go into its folder
-    #[command(
-        after_help = "Examples:\n  hugoniot run case.ron\n  hugoniot run case.ron --up 100,150 --out results/two"
-    )]
-    Run {
-        /// Case file
-        case: PathBuf,
-        /// Particle velocities in m/s, in place of those of the case
-        #[arg(long, value_name = "U_P", value_delimiter = ',', value_parser = particle_velocity)]
-        up: Vec<f64>,
-        /// Particle sizes, in place of that of the case: the sweep with each, and u_s at vanishing size
-        #[arg(long, value_name = "D", value_delimiter = ',', value_parser = particle_size)]
-        resolutions: Vec<f64>,
-        /// Folder of the results, in place of that of the case
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Cores to use; default: all
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-        threads: Option<u16>,
-        /// Go on with an earlier run in the folder: finished points are kept, the others go on where they were
-        #[arg(long, conflicts_with = "replace")]
-        resume: bool,
-        /// Throw the results of an earlier run in the folder away
-        #[arg(long)]
-        replace: bool,
-        /// Time between two states of a point on disk, in seconds
-        #[arg(long, value_name = "SECONDS", default_value_t = restart::INTERVAL.as_secs_f64(), value_parser = seconds)]
-        keep_every: f64,
-        /// No progress, no summary; failures are still told
-        #[arg(long)]
-        quiet: bool,
-        /// The summary at the end as JSON
-        #[arg(long)]
-        json: bool,
-    },
-    /// Show how far a run is, or how it ended
-    #[command(
-        after_help = "Examples:\n  hugoniot status results/porous-copper\n  watch -n 2 hugoniot status results/porous-copper\n  \
-                      hugoniot status results/porous-copper --json | jq .seconds_left"
-    )]
-    Status {
-        /// Folder of the results
-        folder: PathBuf,
-        /// As JSON
-        #[arg(long)]
-        json: bool,
-    },
-    /// Write the completions for a shell to standard output
-    #[command(after_help = "Examples:
-  hugoniot completions bash > ~/.local/share/bash-completion/completions/hugoniot
-  hugoniot completions zsh > \"${fpath[1]}/_hugoniot\"
-  hugoniot completions fish > ~/.config/fish/completions/hugoniot.fish")]
-    Completions {
-        /// The shell
-        shell: clap_complete::Shell,
-    },
-    /// Write the manual pages into a folder
-    #[command(after_help = "Example:\n  hugoniot man ~/.local/share/man/man1")]
-    Man {
-        /// The folder; it is made if it is not there
-        folder: PathBuf,
-    },
-    /// Write the JSON schema of what --json gives to standard output
-    #[command(
-        after_help = "Examples:\n  hugoniot schema status\n  hugoniot schema check > check.schema.json"
-    )]
-    Schema {
-        /// Which one
-        #[arg(value_enum)]
-        of: schema::Schema,
-    },
-}
-
-/// Reads a particle velocity: `100`, `100 m/s`, `0.1 km/s`.
-fn particle_velocity(text: &str) -> Result<f64, String> {
-    let value = match text.trim().parse::<f64>() {
-        Ok(value) => value,
-        Err(_) => Velocity::parse(text)?.si,
-    };
-    let (low, high) = PARTICLE_VELOCITIES;
-    match (low..=high).contains(&value) {
-        true => Ok(value),
-        false => Err(format!("{value} m/s is out of range; hint: from {low} to {high} m/s")),
-    }
-}
-
-/// Reads a particle size: `1um`, `500 nm`.
-fn particle_size(text: &str) -> Result<f64, String> {
-    let size = Length::parse(text)?.si;
-    if size > 0.0 { Ok(size) } else { Err(format!("{text} is no particle size; hint: such as 1um")) }
-}
-
-/// Reads a time in seconds.
-fn seconds(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| format!("{text:?} is no number of seconds"))?;
-    if (0.0..=1e6).contains(&value) {
-        Ok(value)
-    } else {
-        Err(format!("{value} s is out of range; hint: 0 to 1e6"))
-    }
-}
 
 /// Runs the command; returns the exit code.
 ///
@@ -244,9 +85,14 @@ fn init(name: Option<&str>) -> u8 {
     }
 }
 
-/// Reads a case file; its faults go to standard error.
-fn load(path: &Path, color: bool) -> Option<config::Case> {
-    config::load(path).map_err(|error| eprintln!("{}", error.render(color).trim_end())).ok()
+/// Reads a case file, once: its text, and the case that it is; its faults go to standard error.
+fn load(path: &Path, color: bool) -> Option<(String, config::Case)> {
+    let read = || -> Result<(String, config::Case), config::CaseError> {
+        let text = config::text_of(path)?;
+        let case = config::read(&text, path, None)?;
+        Ok((text, case))
+    };
+    read().map_err(|error| eprintln!("{}", error.render(color).trim_end())).ok()
 }
 
 /// Tells how far the run in a folder is.
@@ -275,7 +121,7 @@ fn check_case(
     picture: Option<PathBuf>,
     color: bool,
 ) -> anyhow::Result<u8> {
-    let Some(case) = load(path, color) else { return Ok(BAD_INPUT) };
+    let Some((_, case)) = load(path, color) else { return Ok(BAD_INPUT) };
     if let Err(error) = load_data(&case) {
         eprintln!("error: {error}");
         return Ok(BAD_INPUT);
@@ -338,11 +184,11 @@ impl Changes {
     }
 }
 
-/// The case at each particle size of a study; `None` if one cannot be, which is told.
-fn study_cases(path: &Path, changes: &Changes, color: bool) -> Option<Vec<config::Case>> {
+/// The case of a text at each particle size of a study; `None` if one cannot be, which is told.
+fn study_cases(text: &str, path: &Path, changes: &Changes, color: bool) -> Option<Vec<config::Case>> {
     let mut cases = Vec::new();
     for &size in &changes.resolutions {
-        let case = config::load_with(path, Some(size));
+        let case = config::read(text, path, Some(size));
         let told = |error: config::CaseError| {
             let size = show::<LengthKind>(size);
             eprintln!("with --resolutions {size}:\n{}", error.render(color).trim_end());
@@ -363,13 +209,13 @@ fn study_cases(path: &Path, changes: &Changes, color: bool) -> Option<Vec<config
 
 fn run_case(path: &Path, changes: Changes, mut options: RunOptions, color: bool) -> anyhow::Result<u8> {
     let changes = changes.sorted();
-    let Some(mut case) = load(path, color) else { return Ok(BAD_INPUT) };
+    // All that runs and all that is kept comes from this one text, however the file changes meanwhile.
+    let Some((text, mut case)) = load(path, color) else { return Ok(BAD_INPUT) };
     if changes.are_refused(&case) {
         return Ok(BAD_INPUT);
     }
     changes.apply(&mut case);
-    let Some(cases) = study_cases(path, &changes, color) else { return Ok(BAD_INPUT) };
-    let text = std::fs::read_to_string(path)?;
+    let Some(cases) = study_cases(&text, path, &changes, color) else { return Ok(BAD_INPUT) };
     if options.folder.as_os_str().is_empty() {
         options.folder = PathBuf::from(&case.output.directory);
     }

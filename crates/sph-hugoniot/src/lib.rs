@@ -30,6 +30,7 @@
 // Units stand in brackets, `[m]`; rustdoc would take them for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod arguments;
 mod check;
 pub mod cli;
 pub mod config;

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use sph_core::{Constraint, Dim2, Dimension, Particles};
+use sph_io::IoError;
 use sph_io::checkpoint::{self, Checkpoint, CheckpointStore, ColumnData};
 use sph_window::{Snapshot, Window, WindowState};
 
@@ -75,16 +76,27 @@ impl Keeper {
         self.folder.join("outcome.ckpt")
     }
 
-    /// The outcome, if the point has ended.
+    /// The outcome, if the point has ended. A damaged one is told and set aside: the point is then run once more, from its
+    /// last state if there is one.
     ///
     /// # Errors
-    /// If it cannot be read, or is damaged.
+    /// If it cannot be read or set aside, or is of another version.
     pub fn outcome(&self) -> Result<Option<PointOutcome>> {
         let path = self.outcome_path();
         if !path.exists() {
             return Ok(None);
         }
-        Ok(Some(checkpoint::read::<PointOutcome>(&path)?.header))
+        match checkpoint::read::<PointOutcome>(&path) {
+            Ok(found) => Ok(Some(found.header)),
+            Err(fault @ IoError::Damaged { .. }) => {
+                let aside = self.folder.join("outcome.ckpt.damaged");
+                std::fs::rename(&path, &aside)
+                    .with_context(|| format!("{fault}; it cannot be set aside as {}", aside.display()))?;
+                tracing::warn!("{fault}; the point goes on from its last state, or begins anew");
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Keeps the outcome; states on the way to it are not needed any more.

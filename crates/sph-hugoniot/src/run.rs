@@ -13,6 +13,7 @@ use sph_io::progress::{Mode, Progress};
 use sph_riemann::StageTimes;
 
 use crate::config::Case;
+use crate::config::case::Refinement;
 use crate::estimate;
 use crate::microstructure::{self, Sample};
 use crate::outcome::{PointOutcome, Status};
@@ -103,27 +104,31 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     };
     let report = Report::create(&options.folder, case, case_text)?;
     let board = StatusBoard::new(&options.folder, &case.name, &options.go_on);
-    let outcomes = rounds(case, &sample, &report, &board, options, interrupt)?;
-    let finished: Vec<&PointOutcome> = outcomes.iter().collect();
-    let curves = Curves::new(case, &sample, &finished, &data);
-    report.write_curves(&curves)?;
-    let facts = RunFacts {
-        command: sph_io::machine::command(),
-        started: clock::unix_seconds(began),
-        seconds: started.elapsed().as_secs_f64(),
-        threads: options.threads,
-        case_text: case_text.to_owned(),
+    let to_its_end = || -> Result<RunEnd> {
+        let (outcomes, way_out) = rounds(case, &sample, &report, &board, options, interrupt)?;
+        let finished: Vec<&PointOutcome> = outcomes.iter().collect();
+        let curves = Curves::new(case, &sample, &finished, &data);
+        report.write_curves(&curves)?;
+        let facts = RunFacts {
+            command: sph_io::machine::command(),
+            started: clock::unix_seconds(began),
+            seconds: started.elapsed().as_secs_f64(),
+            threads: options.threads,
+            case_text: case_text.to_owned(),
+        };
+        report.write_page(&curves, &sample, &finished, &facts)?;
+        let end = end_of(&finished, way_out);
+        board.finish(end.word());
+        let seconds = started.elapsed().as_secs_f64();
+        if options.json {
+            println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
+        } else if !options.quiet {
+            print_summary(&curves, &finished, report.folder(), seconds);
+        }
+        Ok(end)
     };
-    report.write_page(&curves, &sample, &finished, &facts)?;
-    let end = end_of(&finished, interrupt);
-    board.finish(end.word());
-    let seconds = started.elapsed().as_secs_f64();
-    if options.json {
-        println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
-    } else if !options.quiet {
-        print_summary(&curves, &finished, report.folder(), seconds);
-    }
-    Ok(end)
+    // Without this word the run would look killed.
+    to_its_end().inspect_err(|_| board.break_off())
 }
 
 /// Makes the folder and holds it for this process; how the run ends if another is at work there.
@@ -140,7 +145,7 @@ pub(crate) fn hold(folder: &Path) -> Result<Result<FolderLock, RunEnd>> {
     }
 }
 
-/// Round after round until no further point is asked for; all outcomes, in the order of u_p.
+/// Round after round until no further point is asked for; all outcomes, in the order of u_p, and whether any are missing.
 fn rounds(
     case: &Case,
     sample: &Sample,
@@ -148,22 +153,58 @@ fn rounds(
     board: &StatusBoard,
     options: &RunOptions,
     interrupt: &AtomicBool,
-) -> Result<Vec<PointOutcome>> {
-    let mut finished = Vec::new();
+) -> Result<(Vec<PointOutcome>, WayOut)> {
+    let (mut finished, mut begun) = (Vec::new(), 0);
     let mut points = case.points.clone();
-    while !points.is_empty() {
+    loop {
+        begun += points.len();
         let sweep = Sweep { case, sample, points: &points };
         board.expect(&points);
         finished = round(sweep, finished, report, board, options, interrupt)?;
-        points = match &case.refinement {
-            Some(refinement) if !interrupt.load(Ordering::Relaxed) => {
-                let known: Vec<refine::Known> = finished.iter().map(PointOutcome::known).collect();
-                refine::next_points(&known, refinement)
-            }
-            _ => Vec::new(),
-        };
+        let interrupted = interrupt.load(Ordering::Relaxed);
+        match next_round(&finished, begun, case.refinement.as_ref(), interrupted) {
+            Next::Points(more) => points = more,
+            Next::End(way_out) => return Ok((finished, way_out)),
+        }
     }
-    Ok(finished)
+}
+
+/// How the last round ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum WayOut {
+    /// Every point that was asked for is at its end.
+    Whole,
+    /// Stopped from outside, with points not begun or not at their end.
+    CutShort,
+}
+
+/// What follows a round.
+#[derive(Clone, Debug, PartialEq)]
+enum Next {
+    /// Another round with these points [m/s].
+    Points(Vec<f64>),
+    /// Nothing.
+    End(WayOut),
+}
+
+/// What follows a round, `begun` being the number of all points so far. An interrupt that came when all points were at their
+/// end has cut nothing short.
+fn next_round(
+    finished: &[PointOutcome],
+    begun: usize,
+    refinement: Option<&Refinement>,
+    interrupted: bool,
+) -> Next {
+    if finished.len() < begun || finished.iter().any(|o| o.status == Status::Interrupted) {
+        return Next::End(WayOut::CutShort);
+    }
+    let known: Vec<refine::Known> = finished.iter().map(PointOutcome::known).collect();
+    let more = refinement.map_or(Vec::new(), |refinement| refine::next_points(&known, refinement));
+    match (more.is_empty(), interrupted) {
+        (true, _) => Next::End(WayOut::Whole),
+        (false, true) => Next::End(WayOut::CutShort),
+        (false, false) => Next::Points(more),
+    }
 }
 
 /// Runs some points; their outcomes together with the earlier ones, in the order of u_p.
@@ -207,8 +248,8 @@ fn counted(count: usize, word: &str) -> String {
     format!("{count} {word}{}", if count == 1 { "" } else { "s" })
 }
 
-fn end_of(outcomes: &[&PointOutcome], interrupt: &AtomicBool) -> RunEnd {
-    if interrupt.load(Ordering::Relaxed) {
+fn end_of(outcomes: &[&PointOutcome], way_out: WayOut) -> RunEnd {
+    if way_out == WayOut::CutShort {
         RunEnd::Interrupted
     } else if outcomes.iter().any(|o| o.has_failed()) {
         RunEnd::SomeFailed
@@ -341,3 +382,7 @@ impl Control for PointControl<'_> {
         self.watcher.board.progress(u_p, way, left.map(|left| left.as_secs_f64()));
     }
 }
+
+#[cfg(test)]
+#[path = "run_tests.rs"]
+mod tests;

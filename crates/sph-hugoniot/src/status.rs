@@ -23,6 +23,9 @@ pub const FORMAT: u32 = 1;
 /// Least time between two writings.
 const INTERVAL: Duration = Duration::from_secs(1);
 
+/// The end of a run that an error stopped: a full disk, a folder that must not be written to.
+const BROKEN_OFF: &str = "stopped by an error";
+
 /// What a point is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -107,6 +110,8 @@ struct Board {
     /// When each point began, and the cells that it had swept then.
     begun: Vec<(f64, Instant, f64)>,
     written: Option<Instant>,
+    /// That the file could not be written has been told.
+    told: bool,
 }
 
 impl StatusBoard {
@@ -125,7 +130,7 @@ impl StatusBoard {
             end: None,
             points: Vec::new(),
         };
-        let state = Mutex::new(Board { status, begun: Vec::new(), written: None });
+        let state = Mutex::new(Board { status, begun: Vec::new(), written: None, told: false });
         Self { path: folder.join(FILE), state }
     }
 
@@ -174,15 +179,23 @@ impl StatusBoard {
         self.write(&mut board, true);
     }
 
-    /// Writes the file, if it is time. That nobody can read it is no reason to stop a run.
+    /// The run at its end by an error, which tells more than that this file, too, could not be written.
+    pub fn break_off(&self) {
+        self.state().told = true;
+        self.finish(BROKEN_OFF);
+    }
+
+    /// Writes the file, if it is time. That nobody can read it is no reason to stop a run; it is told once.
     fn write(&self, board: &mut Board, now: bool) {
         if !now && board.written.is_some_and(|last| last.elapsed() < INTERVAL) {
             return;
         }
         board.status.updated = unix_seconds(SystemTime::now());
         let text = serde_json::to_string_pretty(&board.status).unwrap_or_default();
-        if let Err(error) = sph_io::write_atomic(&self.path, text.as_bytes()) {
-            tracing::warn!("{error}");
+        if let Err(error) = sph_io::write_atomic(&self.path, text.as_bytes())
+            && !std::mem::replace(&mut board.told, true)
+        {
+            tracing::warn!("{error}; `hugoniot status` does not see how far the run is");
         }
         board.written = Some(Instant::now());
     }
@@ -239,7 +252,7 @@ fn finite(value: f64) -> Option<f64> {
 /// What a look at a folder finds: the file, and whether the run is alive.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Found {
-    /// `running`, `done`, `some failed`, `interrupted`, or `killed`.
+    /// `running`, `done`, `some failed`, `interrupted`, `stopped by an error`, or `killed`.
     pub state: String,
     /// What the run wrote last.
     #[serde(flatten)]
@@ -300,7 +313,7 @@ impl Found {
                 "; process {} is gone, its last word is {age} old\ngo on with: {}",
                 status.process, status.go_on
             ),
-            "interrupted" => format!(" {age} ago\ngo on with: {}", status.go_on),
+            "interrupted" | BROKEN_OFF => format!(" {age} ago\ngo on with: {}", status.go_on),
             _ => format!(" {age} ago"),
         };
         format!("{head}{tail}\n{}", self.table().to_text())
@@ -380,6 +393,13 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("stopped"), "{text}");
+
+        board.break_off();
+        let text = read(folder.path()).unwrap().unwrap().to_text();
+        assert!(
+            text.contains("test: stopped by an error, 1 of 2") && text.contains("go on with: "),
+            "{text}"
+        );
 
         board.finish("done");
         assert_eq!(read(folder.path()).unwrap().unwrap().state, "done");

@@ -14,7 +14,7 @@ fn smoke_case() -> PathBuf {
 fn hugoniot(case: &Path, out: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hugoniot"));
     command.arg("run").arg(case).arg("--out").arg(out).args(["--quiet", "--threads", "1"]).args(more);
-    command.env_remove("RUST_BACKTRACE").stdout(Stdio::null()).stderr(Stdio::piped());
+    command.env_remove("RUST_BACKTRACE").env_remove("RUST_LOG").stdout(Stdio::null()).stderr(Stdio::piped());
     command
 }
 
@@ -94,11 +94,35 @@ fn a_damaged_state_is_told_and_the_one_before_it_taken() {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     std::fs::write(&newest, bytes).expect("a damaged state");
-    let mut command = hugoniot(&smoke_case(), &out, &["--up", "300", "--resume"]);
-    command.env("RUST_LOG", "warn");
-    let (code, said) = finish(command);
+    let (code, said) = finish(hugoniot(&smoke_case(), &out, &["--up", "300", "--resume"]));
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("the state before it is taken"), "{said}");
+    assert_eq!(said.lines().count(), 1, "and nothing else: {said}");
+}
+
+#[test]
+fn a_run_that_an_error_stopped_does_not_look_killed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("run");
+    // The page cannot be written where a folder is; all before it can.
+    std::fs::create_dir_all(out.join("report.html")).expect("a folder in the way");
+    let (code, said) = finish(hugoniot(&smoke_case(), &out, &["--up", "300"]));
+    assert_eq!(code, Some(1), "{said}");
+    let output = Command::new(env!("CARGO_BIN_EXE_hugoniot")).arg("status").arg(&out).output();
+    let told = String::from_utf8_lossy(&output.expect("the program runs").stdout).into_owned();
+    assert!(told.contains("smoke: stopped by an error, 1 of 1 points ended"), "{told}");
+    assert!(told.contains("go on with: hugoniot run ") && told.contains("--resume"), "{told}");
+}
+
+#[test]
+fn a_status_that_cannot_be_written_is_told_once_and_the_run_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("run");
+    std::fs::create_dir_all(out.join("status.json")).expect("a folder in the way");
+    let (code, said) = finish(hugoniot(&smoke_case(), &out, &["--up", "300"]));
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(said.matches("status.json").count(), 1, "{said}");
+    assert!(said.contains("WARN") && said.lines().count() == 1, "{said}");
 }
 
 /// Folders below a place, and the place itself.

@@ -1,9 +1,10 @@
-//! SIGKILL at random moments: a run that is killed again and again, with states damaged in between and another number of
+//! SIGKILL at random moments: a run that is killed again and again, with states and outcomes damaged in between and another number of
 //! threads each time, ends with the bytes of a run that was left alone.
 //!
 //! `cargo test` kills a few times; `cargo xtask soak` sets `SOAK_KILLS` and `SOAK_SEED`.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -16,6 +17,10 @@ use sph_riemann::StageTimes;
 
 /// Kills of each case, where the environment does not say otherwise.
 const KILLS: u64 = 4;
+/// So many kills cannot all come before there is anything to damage.
+const MANY: u64 = 20;
+/// Where a checkpoint has its version: a file of another one is refused, not damaged.
+const VERSION: Range<usize> = 8..12;
 
 fn number(variable: &str, default: u64) -> u64 {
     std::env::var(variable).map_or(default, |text| text.parse().expect("a whole number"))
@@ -84,29 +89,39 @@ impl Soak {
         true
     }
 
-    /// Cuts the newest state of a point, or changes a byte of it; the one before must then do.
+    /// Cuts the newest state of a point, or changes a byte of it; the one before must then do. So with the outcome of some
+    /// points that have ended: they are then run once more.
     fn damage(&mut self, out: &Path) {
         for point in list(&out.join("points")) {
+            let outcome = point.join("outcome.ckpt");
+            if outcome.exists() && self.random.random_range(0..2) == 0 {
+                self.damage_file(&outcome);
+            }
             let is_state = |path: &PathBuf| {
                 let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 name.starts_with("state-") && name.ends_with(".ckpt")
             };
             let states: Vec<PathBuf> = list(&point).into_iter().filter(is_state).collect();
             let [_, newest] = &states[..] else { continue };
-            let mut bytes = std::fs::read(newest).expect("a state");
-            // Killed before it saw that a state was cut to nothing: there is nothing to damage any more.
-            if bytes.is_empty() {
-                continue;
-            }
-            let place = self.random.random_range(0..bytes.len());
-            if self.random.random_range(0..2) == 0 {
-                bytes.truncate(place);
-            } else {
-                bytes[place] ^= self.random.random_range(1..256_u32) as u8;
-            }
-            std::fs::write(newest, bytes).expect("a damaged state");
-            self.damaged += 1;
+            self.damage_file(newest);
         }
+    }
+
+    /// Cuts a file, or changes a byte of it.
+    fn damage_file(&mut self, path: &Path) {
+        let mut bytes = std::fs::read(path).expect("a state or an outcome");
+        // Killed before it saw that a state was cut to nothing: there is nothing to damage any more.
+        if bytes.is_empty() {
+            return;
+        }
+        let place = self.random.random_range(0..bytes.len());
+        if self.random.random_range(0..2) == 0 || VERSION.contains(&place) {
+            bytes.truncate(place);
+        } else {
+            bytes[place] ^= self.random.random_range(1..256_u32) as u8;
+        }
+        std::fs::write(path, bytes).expect("a damaged file");
+        self.damaged += 1;
     }
 
     /// Kills the run until it is through; and so again in a new folder, until there were enough kills.
@@ -210,8 +225,9 @@ fn soak(name: &str, case: &str, seed: u64) {
     let (kills, seed) = (number("SOAK_KILLS", KILLS), number("SOAK_SEED", seed));
     let mut soak = Soak::new(case, seed);
     soak.run(kills);
+    assert!(kills < MANY || soak.damaged > 0, "{name}: {kills} kills, and no file was damaged");
     println!(
-        "{name}: {} kills and {} damaged states in {} runs, seed {seed}: same bytes",
+        "{name}: {} kills and {} damaged files in {} runs, seed {seed}: same bytes",
         soak.kills, soak.damaged, soak.rounds
     );
 }

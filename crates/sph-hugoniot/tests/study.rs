@@ -61,3 +61,27 @@ fn a_particle_size_that_does_not_fit_is_told_before_anything_runs() {
     assert!(!folder.path().join("out").exists());
     assert_eq!(study(folder.path(), &["--resolutions", "1GPa"]).0, Some(2));
 }
+
+/// A pipe can be read once: so is it with a file that is edited while the run begins.
+#[cfg(unix)]
+#[test]
+fn the_case_is_read_once_for_all_particle_sizes_and_for_what_is_kept() {
+    use std::io::Write;
+    let folder = tempfile::tempdir().unwrap();
+    let text = sph_hugoniot::template::text("smoke")
+        .unwrap()
+        .replace("output: (", "output: (images: false, ")
+        .replace("max_fed_cells: 12", "max_fed_cells: 6")
+        .replace("Cells(4)", "Cells(2)");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hugoniot"))
+        .current_dir(folder.path())
+        .args(["run", "/dev/stdin", "--up", "300", "--resolutions", "2.5um", "--out", "out", "--quiet"])
+        .stdin(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(std::fs::read_to_string(folder.path().join("out/D_2.5um/case.ron")).unwrap(), text);
+}

@@ -23,24 +23,24 @@ use std::path::Path;
 pub use case::Case;
 pub(crate) use resolve::PARTICLE_VELOCITIES;
 pub use sph_case::{CaseError, Fault};
-pub(crate) use sph_case::{fault, field, units};
+pub(crate) use sph_case::{fault, field, text_of, units};
 
 /// Reads a case file.
 ///
 /// # Errors
 /// [`CaseError`] with every fault of the file, each at its place; also if the file cannot be read.
 pub fn load(path: &Path) -> Result<Case, CaseError> {
-    load_with(path, None)
+    read(&text_of(path)?, path, None)
 }
 
-/// Reads a case file with another particle size [m] than it has; all that must hold is checked with that one.
+/// Reads the text of a case file, with another particle size [m] than it has if one is given; all that must hold is checked
+/// with that one.
 ///
 /// # Errors
-/// As [`load`].
-pub(crate) fn load_with(path: &Path, particle_size: Option<f64>) -> Result<Case, CaseError> {
-    let text = sph_case::text_of(path)?;
+/// [`CaseError`] with every fault of the text, each at its place.
+pub(crate) fn read(text: &str, path: &Path, particle_size: Option<f64>) -> Result<Case, CaseError> {
     let shown = path.display().to_string();
-    let mut case = parse_with(&text, &shown, particle_size)?;
+    let mut case = parse_with(text, &shown, particle_size)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     for source in &mut case.data {
         if let case::DataSource::Csv { file, .. } = source {

@@ -77,10 +77,12 @@ pub(crate) fn run_kept(
     control: &dyn Control,
     mut keeper: Option<Keeper>,
 ) -> Result<PointOutcome> {
-    if let Some((keeper, outcome)) = keeper.as_ref().and_then(|k| k.outcome().transpose().map(|o| (k, o))) {
+    if let Some(keeper) = &keeper
+        && let Some(outcome) = keeper.outcome()?
+    {
         // A process that was killed between the two has left states behind.
         keeper.forget_states()?;
-        return outcome;
+        return Ok(outcome);
     }
     let started = Instant::now();
     let kept = keeper.as_ref().map(|k| k.load(case, sample, particle_velocity)).transpose()?.flatten();
@@ -355,3 +357,6 @@ impl<'c> Point<'c> {
         start.unwrap_or(stop.startup_at(cells) as f64 + 0.5 * cells as f64) + blocks as f64
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,9 +11,9 @@
 pub mod extrapolate;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use sph_io::plot::{Axis, Figure, Series};
 use sph_io::table::{Column, Table, Values};
 
@@ -49,6 +49,9 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
     let mut some_failed = false;
     let mut tables = Vec::new();
     for case in cases {
+        if interrupt.load(Ordering::Relaxed) {
+            return Ok(RunEnd::Interrupted);
+        }
         let size = case.medium.particle_size;
         let folder = folder_of(&options.folder, size);
         if !options.quiet && !options.json {
@@ -63,7 +66,7 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
         }
         tables.push((size, Table::read_csv(folder.join("hugoniot.csv"))?));
     }
-    let rows = rows(&tables);
+    let rows = rows(&tables)?;
     earlier::clear_leftovers(&options.folder)?;
     write(&options.folder, &cases[0].name, &rows)?;
     let table = table(&cases[0].name, &rows);
@@ -81,16 +84,21 @@ pub fn folder_of(folder: &Path, particle_size: f64) -> PathBuf {
 }
 
 /// The settled points of all runs by u_p, extrapolated.
-fn rows(tables: &[(f64, Table)]) -> Vec<Row> {
+///
+/// # Errors
+/// If a table of a run lacks what is read of it.
+fn rows(tables: &[(f64, Table)]) -> Result<Vec<Row>> {
     let mut rows: Vec<Row> = Vec::new();
     for (size, table) in tables {
-        let (u_p, u_s, error) = (numbers(table, "u_p"), numbers(table, "u_s"), numbers(table, "u_s_error"));
+        let of = || format!("hugoniot.csv of the run with D = {}", show::<LengthKind>(*size));
+        let column = |name: &str| numbers(table, name).with_context(of);
+        let (u_p, u_s, error) = (column("u_p")?, column("u_s")?, column("u_s_error")?);
         let status = match table.column("status").map(|c| &c.values) {
-            Some(Values::Text(words)) => words.clone(),
-            _ => Vec::new(),
+            Some(Values::Text(words)) => words,
+            _ => return Err(anyhow!("there is no column of words `status`")).with_context(of),
         };
         for (k, &particle_velocity) in u_p.iter().enumerate() {
-            if status.get(k).is_none_or(|s| s != "settled") {
+            if status[k] != "settled" {
                 continue;
             }
             let at = AtSize { particle_size: *size, shock_velocity: u_s[k], standard_error: error[k] };
@@ -102,15 +110,15 @@ fn rows(tables: &[(f64, Table)]) -> Vec<Row> {
     }
     rows.sort_by(|a, b| a.particle_velocity.total_cmp(&b.particle_velocity));
     rows.iter_mut().for_each(|row| row.limit = extrapolate(&row.sizes));
-    rows
+    Ok(rows)
 }
 
 /// A column of numbers, whole or not.
-fn numbers(table: &Table, name: &str) -> Vec<f64> {
+fn numbers(table: &Table, name: &str) -> Result<Vec<f64>> {
     match table.column(name).map(|c| &c.values) {
-        Some(Values::Float(values)) => values.clone(),
-        Some(Values::Integer(values)) => values.iter().map(|&v| v as f64).collect(),
-        _ => vec![f64::NAN; table.n_rows()],
+        Some(Values::Float(values)) => Ok(values.clone()),
+        Some(Values::Integer(values)) => Ok(values.iter().map(|&v| v as f64).collect()),
+        _ => Err(anyhow!("there is no column of numbers `{name}`")),
     }
 }
 
@@ -209,7 +217,7 @@ mod tests {
     #[test]
     fn settled_points_of_all_runs_are_extrapolated_and_drawn() {
         let tables: Vec<(f64, Table)> = [2.0, 1.0, 0.5].iter().map(|&d| (d * 1e-6, run_table(d))).collect();
-        let rows = rows(&tables);
+        let rows = rows(&tables).unwrap();
         assert_eq!(rows.len(), 2, "the point that never settled is left out");
         let limit = rows[0].limit.as_ref().unwrap();
         assert!((limit.shock_velocity - 425.0).abs() < limit.uncertainty, "{limit:?}");
@@ -219,5 +227,15 @@ mod tests {
         let table = Table::read_csv(folder.path().join("resolution.csv")).unwrap();
         assert!(table.column("u_s_1um").is_some() && table.column("u_s_500nm").is_some());
         assert!(folder.path().join("plots/resolution.png").metadata().unwrap().len() > 5000);
+    }
+
+    #[test]
+    fn a_table_that_lacks_a_column_is_an_error() {
+        for missing in ["u_p", "u_s", "u_s_error", "status"] {
+            let mut table = run_table(0.0);
+            table.columns.retain(|column| column.name != missing);
+            let error = format!("{:#}", rows(&[(2e-6, run_table(0.0)), (1e-6, table)]).unwrap_err());
+            assert!(error.contains("D = 1 um") && error.contains(&format!("`{missing}`")), "{error}");
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! What each public crate would hold when it is published.
 
 use anyhow::Context;
-use serde_json::Value;
 
 use super::Finding;
 use crate::process;
@@ -13,12 +12,7 @@ const MOST_BYTES: u64 = 2_000_000;
 
 /// Names of the crates that may be published.
 pub(super) fn public_crates() -> anyhow::Result<Vec<String>> {
-    let output = process::cargo()
-        .args(["metadata", "--no-deps", "--format-version", "1", "--manifest-path"])
-        .arg(process::root().join("Cargo.toml"))
-        .output()
-        .context("cannot start cargo metadata")?;
-    let metadata: Value = serde_json::from_slice(&output.stdout).context("cargo metadata gave no JSON")?;
+    let metadata = process::metadata(&["--no-deps"])?;
     let packages = metadata["packages"].as_array().context("metadata has no packages")?;
     let public =
         packages.iter().filter(|package| package["publish"].as_array().is_none_or(|to| !to.is_empty()));

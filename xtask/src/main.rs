@@ -4,6 +4,7 @@
 //! others, and link no numerics.
 
 mod bench;
+mod code;
 mod docs;
 mod files;
 mod fuzz;

@@ -6,7 +6,6 @@
 //!
 //! All faults are told at once, each with its place.
 
-mod code;
 mod dependencies;
 mod sources;
 

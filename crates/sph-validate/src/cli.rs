@@ -98,6 +98,12 @@ impl Arguments {
         words.extend(self.scheme.iter().map(|scheme| format!("--scheme {scheme}")));
         words.join(" ")
     }
+
+    /// The command that goes on where this one was interrupted.
+    fn go_on(&self) -> String {
+        let folder = machine::quoted(self.out.display().to_string());
+        format!("{} --out {folder} --resume", self.command())
+    }
 }
 
 /// Runs the command; returns the exit code.
@@ -147,11 +153,7 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let finished = ended.iter().filter(|ended| ended.result.is_ok()).count();
     progress.finish(&format!("{finished} of {} runs", ended.len()));
     if interrupt.load(Ordering::Relaxed) {
-        let folder = arguments.out.display();
-        eprintln!(
-            "stopped; {finished} finished runs are kept. Go on with: {} --out {folder} --resume",
-            arguments.command()
-        );
+        eprintln!("stopped; {finished} finished runs are kept. Go on with: {}", arguments.go_on());
         return Ok(INTERRUPTED);
     }
     let provenance = provenance(arguments.command(), begun, taken_over);
@@ -229,4 +231,18 @@ fn show(progress: &mut Progress, status: Status, ended: Option<(&Case, &Result<O
         Some((case, Err(error))) => progress.note(&format!("{case}: FAILED, {error}")),
     }
     progress.update(status.share, &format!("{} of {} runs", status.done, status.total));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn command_that_goes_on_is_what_a_shell_takes_for_the_same() {
+        let typed = ["sph-validate", "--suite", "riemann", "--out", "my results/it's"];
+        let arguments = Arguments::try_parse_from(typed).expect("a command");
+        let expected =
+            r"cargo xtask validate --tier quick --suite riemann --out 'my results/it'\''s' --resume";
+        assert_eq!(arguments.go_on(), expected);
+    }
 }

@@ -22,9 +22,9 @@ pub fn build() -> anyhow::Result<ExitCode> {
     process::run(&mut rustdoc("-D warnings"))
 }
 
-/// Builds the documentation of all items, beside the public one, and tells the links that lead nowhere; true if there are
-/// none.
-pub fn check_links() -> anyhow::Result<bool> {
+/// Builds the documentation of all items, beside the public one, and tells the links that lead nowhere: how many, and whether
+/// all was built.
+pub fn check_links() -> anyhow::Result<(usize, ExitCode)> {
     let metadata = process::metadata(&["--no-deps", "--offline"])?;
     let target = metadata["target_directory"].as_str().context("cargo names no target folder")?;
     let built = metadata["build_directory"].as_str().unwrap_or(target);
@@ -34,8 +34,9 @@ pub fn check_links() -> anyhow::Result<bool> {
     command.args(["--document-private-items", "--message-format", "json"]).stderr(Stdio::inherit());
     let output = command.output().context("cannot start cargo doc")?;
     let told = told(&String::from_utf8_lossy(&output.stdout));
-    told.iter().for_each(|message| eprintln!("{message}"));
-    Ok(output.status.success() && told.is_empty())
+    told.iter().for_each(|message| eprintln!("{}", message["rendered"].as_str().unwrap_or_default()));
+    let built = if output.status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    Ok((told.iter().filter(|message| is_broken(message)).count(), built))
 }
 
 fn rustdoc(flags: &str) -> Command {
@@ -47,17 +48,20 @@ fn rustdoc(flags: &str) -> Command {
     command
 }
 
-/// What the compiler says, as it is shown to readers, but for units that it takes for links.
-fn told(messages: &str) -> Vec<String> {
+/// What the compiler says, but for units that it takes for links.
+fn told(messages: &str) -> Vec<Value> {
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     let of_compiler = messages.filter(|message| message["reason"] == "compiler-message");
-    let faults = of_compiler.map(|message| message["message"].clone()).filter(|message| !is_unit(message));
-    faults.map(|message| message["rendered"].as_str().unwrap_or_default().to_owned()).collect()
+    of_compiler.map(|message| message["message"].clone()).filter(|message| !is_unit(message)).collect()
+}
+
+fn is_broken(message: &Value) -> bool {
+    message["code"]["code"] == BROKEN
 }
 
 /// True for a broken link that is a unit: its bracket stands right before the name.
 fn is_unit(message: &Value) -> bool {
-    message["code"]["code"] == BROKEN && before_link(message).is_some_and(|before| before.ends_with('['))
+    is_broken(message) && before_link(message).is_some_and(|before| before.ends_with('['))
 }
 
 /// What stands in its line before the name of the link.
@@ -117,7 +121,10 @@ mod tests {
             json!({ "reason": "compiler-artifact" }).to_string(),
             "no JSON".to_owned(),
         ];
-        let expected = ["Part::density", "Part::speed", "Of [`Times`].", "a URL"];
-        assert_eq!(told(&messages.join("\n")), expected);
+        let told = told(&messages.join("\n"));
+        let expected =
+            [("Part::density", true), ("Part::speed", true), ("Of [`Times`].", true), ("a URL", false)];
+        let found = told.iter().map(|message| (message["rendered"].as_str().unwrap(), is_broken(message)));
+        assert_eq!(found.collect::<Vec<_>>(), expected);
     }
 }

@@ -1,8 +1,10 @@
 //! How to run things: validation, benches, documentation, tidiness.
 //!
-//! Each command is one file. They spawn release builds of the programs and link no numerics.
+//! Each command is one file, or a folder where it looks at several things. They start cargo, the programs and the tools of
+//! others, and link no numerics.
 
 mod bench;
+mod code;
 mod docs;
 mod files;
 mod fuzz;

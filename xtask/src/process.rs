@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use anyhow::Context;
+use serde_json::Value;
 
 /// The cargo that runs this task.
 pub fn cargo() -> Command {
@@ -23,7 +24,33 @@ pub fn run(command: &mut Command) -> anyhow::Result<ExitCode> {
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
+/// The packages of the workspace as cargo reads their manifests; `options` are those of `cargo metadata`.
+pub fn metadata(options: &[&str]) -> anyhow::Result<Value> {
+    let output = cargo()
+        .args(["metadata", "--format-version", "1", "--manifest-path"])
+        .arg(root().join("Cargo.toml"))
+        .args(options)
+        .output()
+        .context("cannot start cargo metadata")?;
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    anyhow::ensure!(output.status.success(), "cargo metadata failed: {complaint}");
+    serde_json::from_slice(&output.stdout).context("cargo metadata gave no JSON")
+}
+
 /// Whether cargo has a subcommand that is not its own.
 pub fn has_subcommand(name: &str) -> bool {
     cargo().args([name, "--version"]).output().is_ok_and(|output| output.status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn metadata_that_cargo_refuses_to_give_is_an_error_with_its_words() {
+        let packages = metadata(&["--no-deps", "--offline"]).unwrap();
+        assert!(packages["packages"].as_array().is_some_and(|packages| !packages.is_empty()));
+        let error = metadata(&["--no-such-option"]).unwrap_err().to_string();
+        assert!(error.starts_with("cargo metadata failed") && error.contains("--no-such-option"), "{error}");
+    }
 }

@@ -98,6 +98,12 @@ impl Arguments {
         words.extend(self.scheme.iter().map(|scheme| format!("--scheme {scheme}")));
         words.join(" ")
     }
+
+    /// The command that goes on where this one was interrupted.
+    fn go_on(&self) -> String {
+        let folder = machine::quoted(self.out.display().to_string());
+        format!("{} --out {folder} --resume", self.command())
+    }
 }
 
 /// Runs the command; returns the exit code.
@@ -146,12 +152,8 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let progress = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
     let finished = ended.iter().filter(|ended| ended.result.is_ok()).count();
     progress.finish(&format!("{finished} of {} runs", ended.len()));
-    if interrupt.load(Ordering::Relaxed) {
-        let folder = arguments.out.display();
-        eprintln!(
-            "stopped; {finished} finished runs are kept. Go on with: {} --out {folder} --resume",
-            arguments.command()
-        );
+    if is_interrupted(&ended) {
+        eprintln!("stopped; {finished} finished runs are kept. Go on with: {}", arguments.go_on());
         return Ok(INTERRUPTED);
     }
     let provenance = provenance(arguments.command(), begun, taken_over);
@@ -163,6 +165,11 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let out_of_date = arguments.strict && report.mended().next().is_some();
     let gate_missed = report.unexplained().next().is_some() || out_of_date;
     Ok(worst.unwrap_or(if gate_missed { GATE_MISSED } else { PASSED }))
+}
+
+/// True if a run was kept from its end. A Ctrl-C that came after the last run has stopped nothing: there is a report.
+fn is_interrupted(ended: &[Ended<'_>]) -> bool {
+    ended.iter().any(|ended| matches!(ended.result, Err(ValidateError::Interrupted)))
 }
 
 /// The first Ctrl-C asks the runs to stop; the second ends the process at once. Where no handler can be set, Ctrl-C ends
@@ -229,4 +236,39 @@ fn show(progress: &mut Progress, status: Status, ended: Option<(&Case, &Result<O
         Some((case, Err(error))) => progress.note(&format!("{case}: FAILED, {error}")),
     }
     progress.update(status.share, &format!("{} of {} runs", status.done, status.total));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::Cost;
+    use crate::runner::Job;
+
+    #[test]
+    fn command_that_goes_on_is_what_a_shell_takes_for_the_same() {
+        let typed = ["sph-validate", "--suite", "riemann", "--out", "my results/it's"];
+        let arguments = Arguments::try_parse_from(typed).expect("a command");
+        let expected =
+            r"cargo xtask validate --tier quick --suite riemann --out 'my results/it'\''s' --resume";
+        assert_eq!(arguments.go_on(), expected);
+    }
+
+    /// Whether something was stopped is for the runs to say: the signal may come when all have ended.
+    #[test]
+    fn only_a_run_that_was_stopped_is_an_interruption() {
+        let suite = suites::find("riemann").expect("it is in the list");
+        let case = Case::new("riemann", SchemeName::Csph, 100);
+        let whole = Outcome {
+            case: case.clone(),
+            measurements: Vec::new(),
+            conservation: Default::default(),
+            curves: Vec::new(),
+            fields: Vec::new(),
+            cost: Cost::default(),
+        };
+        let ended = |result| Ended { job: Job { suite, case: case.clone() }, result };
+        let failed = || ValidateError::NotReached { case: case.to_string(), reason: "no front".into() };
+        assert!(!is_interrupted(&[ended(Ok(whole.clone())), ended(Err(failed()))]));
+        assert!(is_interrupted(&[ended(Ok(whole)), ended(Err(ValidateError::Interrupted))]));
+    }
 }

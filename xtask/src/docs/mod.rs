@@ -1,12 +1,15 @@
-//! `cargo xtask docs`: rustdoc with warnings denied, links and commands of all Markdown files, and the guide as a book.
+//! `cargo xtask docs`: rustdoc with warnings denied, links of all sources and Markdown files, commands, and the guide as a
+//! book.
 //!
-//! Formulas are plain text, links are checked by [`links`], commands by [`commands`]; [`book`] builds the guide.
+//! Formulas are plain text; [`rust`] checks the links of the sources, [`links`] those of Markdown, [`commands`] the commands;
+//! [`book`] builds the guide.
 
 mod book;
 mod commands;
 mod links;
+mod rust;
 
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use crate::{files, process};
 
@@ -21,29 +24,21 @@ pub struct Arguments {
 /// Builds and checks all documentation; exit status 1 if something is wrong.
 pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let root = process::root();
-    let rustdoc = process::run(&mut rustdoc())?;
+    let ((lost, private), public) = (rust::check_links()?, rust::build()?);
     let (texts, exists) = (files::texts(&root)?, |path: &str| root.join(path).exists());
     let (broken, untrue) = (links::check(&texts, exists), commands::check(&texts, exists));
     for fault in broken.iter().chain(&untrue) {
         eprintln!("error: {fault}");
     }
-    println!("docs: {} broken links, {} commands that are none", broken.len(), untrue.len());
+    let n_broken = broken.len() + lost;
+    println!("docs: {n_broken} broken links, {} commands that are none", untrue.len());
     let book = if arguments.no_book {
         println!("docs: the book was not built, as asked");
         ExitCode::SUCCESS
     } else {
         book::build()?
     };
-    let good =
-        rustdoc == ExitCode::SUCCESS && broken.is_empty() && untrue.is_empty() && book == ExitCode::SUCCESS;
+    let is_built = [private, public, book].iter().all(|built| *built == ExitCode::SUCCESS);
+    let good = is_built && n_broken == 0 && untrue.is_empty();
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-fn rustdoc() -> Command {
-    let mut command = process::cargo();
-    let flags = std::env::var("RUSTDOCFLAGS").unwrap_or_default();
-    command.env("RUSTDOCFLAGS", format!("{flags} -D warnings").trim());
-    command.args(["doc", "--workspace", "--no-deps", "--manifest-path"]);
-    command.arg(process::root().join("Cargo.toml"));
-    command
 }

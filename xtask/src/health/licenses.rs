@@ -22,12 +22,7 @@ const PERMISSIVE: [&str; 10] = [
 ];
 
 pub(super) fn check() -> anyhow::Result<Finding> {
-    let output = process::cargo()
-        .args(["metadata", "--format-version", "1", "--manifest-path"])
-        .arg(process::root().join("Cargo.toml"))
-        .output()
-        .context("cannot start cargo metadata")?;
-    let metadata: Value = serde_json::from_slice(&output.stdout).context("cargo metadata gave no JSON")?;
+    let metadata = process::metadata(&[])?;
     let packages = metadata["packages"].as_array().context("metadata has no packages")?;
     let faults: Vec<String> = packages.iter().filter_map(fault).collect();
     let said = format!("licenses of {} packages against {}", packages.len(), PERMISSIVE.join(", "));

@@ -6,14 +6,11 @@
 //!
 //! All faults are told at once, each with its place.
 
-mod code;
 mod dependencies;
 mod sources;
 
 use std::fmt;
 use std::process::ExitCode;
-
-use anyhow::Context;
 
 use crate::{files, process};
 
@@ -54,25 +51,10 @@ pub fn run() -> anyhow::Result<ExitCode> {
 /// All that is found, faults in the order of their places.
 fn look(texts: &[files::Text]) -> anyhow::Result<sources::Findings> {
     let mut findings = sources::check(texts);
-    findings.faults.extend(dependencies::check(&metadata()?)?);
+    findings.faults.extend(dependencies::check(&process::metadata(&["--no-deps", "--offline"])?)?);
     findings.faults.extend(dependencies::check_lints(texts));
     findings.faults.sort();
     Ok(findings)
-}
-
-/// The packages of the workspace as cargo reads their manifests.
-fn metadata() -> anyhow::Result<serde_json::Value> {
-    let output = process::cargo()
-        .args(["metadata", "--no-deps", "--offline", "--format-version", "1", "--manifest-path"])
-        .arg(process::root().join("Cargo.toml"))
-        .output()
-        .context("cannot start cargo metadata")?;
-    anyhow::ensure!(
-        output.status.success(),
-        "cargo metadata failed: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    serde_json::from_slice(&output.stdout).context("cargo metadata gave no JSON")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The rules that single files obey.
 
 use super::Fault;
-use super::code::{blank, has_word};
+use crate::code::{blank, has_word, test_lines};
 use crate::files::Text;
 
 /// Files of more lines are refused.
@@ -80,14 +80,14 @@ fn rust(text: &Text, findings: &mut Findings) {
         refuse(k + 1, "a formula that rustdoc shows as it is typed; hint: plain letters, as in ρ0 u_s²");
     }
     let code = blank(&text.content);
-    let silent = must_be_silent(&text.path);
-    let tests = code.lines().position(|line| line.trim() == "#[cfg(test)]").unwrap_or(usize::MAX);
+    if must_be_silent(&text.path) {
+        for k in print_lines(&code) {
+            refuse(k + 1, "a library prints; hint: return it, or list the file in xtask/src/tidy/sources.rs");
+        }
+    }
     for (k, line) in code.lines().enumerate() {
         if has_word(line, "dbg!") {
             refuse(k + 1, "dbg! was left behind");
-        }
-        if silent && k < tests && PRINTS.iter().any(|print| has_word(line, print)) {
-            refuse(k + 1, "a library prints; hint: return it, or list the file in xtask/src/tidy/sources.rs");
         }
         if line.trim_start().starts_with("#[ignore") {
             refuse(k + 1, "an ignored test; hint: make it quick, or move it to a command");
@@ -102,6 +102,14 @@ fn rust(text: &Text, findings: &mut Findings) {
     } else if lines > LONG {
         findings.notes.push(format!("{}: {lines} lines", text.path));
     }
+}
+
+/// Lines, from 0 on, that write to the terminal outside of tests.
+fn print_lines(code: &str) -> Vec<usize> {
+    let tests = test_lines(code);
+    let prints = |line: &str| PRINTS.iter().any(|print| has_word(line, print));
+    let lines = code.lines().enumerate().filter(|&(_, line)| prints(line));
+    lines.map(|(k, _)| k).filter(|k| tests.iter().all(|test| !test.contains(k))).collect()
 }
 
 /// True for a doc comment with marks or commands of TeX.
@@ -147,9 +155,10 @@ fn stale_exceptions(texts: &[Text], faults: &mut Vec<Fault>) {
             faults.push(Fault { path: path.into(), line: 0, message: message.into() });
         }
     }
-    for (path, _) in MAY_PRINT {
-        if !texts.iter().any(|t| t.path.starts_with(path)) {
-            let message = "may print as xtask/src/tidy/sources.rs has it, but is not there";
+    for exception @ (path, _) in MAY_PRINT {
+        let mut below = texts.iter().filter(|t| t.is_rust() && listed(&[exception], &t.path));
+        if !below.any(|t| !print_lines(&blank(&t.content)).is_empty()) {
+            let message = "may print as xtask/src/tidy/sources.rs has it, but is not there or does not";
             faults.push(Fault { path: path.into(), line: 0, message: message.into() });
         }
     }
@@ -210,6 +219,31 @@ mod tests {
         let tested = "//! Silent.\n\n#[cfg(test)]\nmod tests {\n    fn t() { println!(\"a\"); }\n}\n";
         assert_eq!(faults_of("crates/a/src/x.rs", tested), [""; 0]);
         assert_eq!(faults_of("crates/a/src/x.rs", prints).len(), 1);
+    }
+
+    /// What stands behind the tests is looked at like what stands before them.
+    #[test]
+    fn a_print_behind_the_tests_is_found() {
+        for tests in ["mod tests;", "fn t() {\n}", "mod tests {\n    fn t() { println!(); }\n}"] {
+            let source = format!("//! Prints.\n\n#[cfg(test)]\n{tests}\nfn f(){{println!()}}\n");
+            let faults = faults_of("crates/a/src/x.rs", &source);
+            let line = source.lines().count();
+            assert!(faults.len() == 1 && faults[0].starts_with(&format!("{line}: a library")), "{faults:?}");
+        }
+    }
+
+    /// A file that has come to be silent must go from the list, and so must one that prints in its tests alone.
+    #[test]
+    fn an_exception_that_is_not_used_is_told() {
+        let (path, _) = MAY_PRINT[0];
+        let is_told = |content: &str| {
+            let mut faults = Vec::new();
+            stale_exceptions(&[Text { path: path.into(), content: content.into() }], &mut faults);
+            faults.iter().any(|fault| fault.path == path)
+        };
+        assert!(!is_told("//! Prints.\n\nfn f() {\n    println!();\n}\n"));
+        assert!(is_told("//! Silent: println!() in words.\n"));
+        assert!(is_told("//! Silent.\n\n#[cfg(test)]\nmod tests {\n    fn t() { println!() }\n}\n"));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Rust sources without their comments and without what stands in texts.
 
+use std::ops::RangeInclusive;
+
 /// The source with blanks in place of comments and of the contents of strings and characters; lines stay lines.
 pub fn blank(source: &str) -> String {
     let characters: Vec<char> = source.chars().collect();
@@ -78,6 +80,35 @@ fn continues_a_word(c: &[char], at: usize) -> bool {
     at > 0 && (c[at - 1].is_alphanumeric() || c[at - 1] == '_')
 }
 
+/// The lines, from 0 on, of the items that stand behind `#[cfg(test)]`, in a source that is blank where [`blank`] makes it so.
+pub fn test_lines(code: &str) -> Vec<RangeInclusive<usize>> {
+    let line_of = |at: usize| code[..at].matches('\n').count();
+    let marks = code.match_indices("#[cfg(test)]");
+    marks.map(|(at, mark)| line_of(at)..=line_of(end_of_item(code, at + mark.len()))).collect()
+}
+
+/// Where the item ends that starts here: at its `;`, at the `,` of a field or an arm, at the end of its braces, or, with
+/// nothing of these, before the bracket that closes what is around it.
+fn end_of_item(code: &str, from: usize) -> usize {
+    let mut open = 0_usize;
+    for (at, c) in code[from..].char_indices() {
+        match c {
+            '(' | '[' | '{' => open += 1,
+            ')' | ']' | '}' if open == 0 => return from + code[from..from + at].trim_end().len(),
+            ')' | ']' => open -= 1,
+            '}' => {
+                open -= 1;
+                if open == 0 {
+                    return from + at;
+                }
+            }
+            ';' | ',' if open == 0 => return from + at,
+            _ => {}
+        }
+    }
+    code.len()
+}
+
 /// True if `word` stands in `line` as a word of its own.
 pub fn has_word(line: &str, word: &str) -> bool {
     let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
@@ -107,6 +138,25 @@ mod tests {
         }
         assert_eq!(blank("a \"x\ny\" b").lines().count(), 2);
         assert_eq!(blank("\"never closed"), " ".repeat(13));
+    }
+
+    #[test]
+    fn tests_end_where_their_item_ends() {
+        let cases = [
+            ("#[cfg(test)]\nmod tests;\nfn f() {}\n", vec![0..=1]),
+            ("fn f() {}\n\n#[cfg(test)]\nmod tests {\n    fn t() {}\n}\nfn g() {}\n", vec![2..=5]),
+            (
+                "#[cfg(test)]\nfn t(x: [u8; 2], y: u8) -> u8 {\n    x[0]\n}\n\n#[cfg(test)]\nuse a::{b, c};\n",
+                vec![0..=3, 5..=6],
+            ),
+            ("#[cfg(test)]\n#[path = \"  \"]\nmod tests;\n", vec![0..=2]),
+            ("struct A {\n    #[cfg(test)]\n    n: usize,\n    m: usize,\n}\n", vec![1..=2]),
+            ("struct A {\n    #[cfg(test)]\n    n: usize\n}\nfn f() {}\n", vec![1..=2]),
+            ("#[cfg(test)]\nmod never_closed {\n", vec![0..=2]),
+        ];
+        for (code, expected) in cases {
+            assert_eq!(test_lines(code), expected, "{code}");
+        }
     }
 
     #[test]

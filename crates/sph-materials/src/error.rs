@@ -113,12 +113,12 @@ pub enum HugoniotError {
     },
     /// No density gives the piston's velocity.
     #[error(
-        "no state behind the shock moves at {piston_velocity} m/s: energy conservation leaves no density beyond {density_limit} kg/m³"
+        "no state behind the shock moves at {piston_velocity} m/s: a single shock does not reach {density_limit} kg/m³"
     )]
     BeyondCompressionLimit {
         /// Piston velocity [m/s].
         piston_velocity: f64,
-        /// Density that no shock passes [kg/m³].
+        /// Density that no shock passes; infinite where it grows without bound before that velocity [kg/m³].
         density_limit: f64,
     },
     /// Even the weakest plastic wave overtakes the precursor.

@@ -26,7 +26,8 @@
 //! Shocks as discontinuities, heat conduction and rate effects left out; elastic and plastic branch each convex
 //! in `V`, which holds for constant G and every equation of state here in compression. The thermodynamic
 //! limit of the Mie-Grüneisen model with strength is `ρ/ρ0 < 1 + 2/γ` (without strength the
-//! singular point is removable, and [`principal()`] goes on to `s_a/(s_a - 1)`).
+//! singular point is removable, and [`principal()`] goes on to `s_a/(s_a - 1)`; for `s_a < 1` it ends at
+//! `u_p = c_a/(1 - s_a)`).
 
 pub mod principal;
 

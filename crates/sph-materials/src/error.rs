@@ -111,6 +111,16 @@ pub enum HugoniotError {
         /// Name of the material.
         material: String,
     },
+    /// The elastic limit lies at a density that no shock from rest reaches.
+    #[error(
+        "material `{material}` yields at {density} kg/m³ in uniaxial strain, and no shock from rest reaches that density: its yield strength is too high for its shear modulus"
+    )]
+    ElasticLimitTooDense {
+        /// Name of the material.
+        material: String,
+        /// Density at the elastic limit [kg/m³].
+        density: f64,
+    },
     /// No density gives the piston's velocity.
     #[error(
         "no state behind the shock moves at {piston_velocity} m/s: a single shock does not reach {density_limit} kg/m³"

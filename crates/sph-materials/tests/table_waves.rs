@@ -72,6 +72,19 @@ fn a_piston_beyond_the_limit_of_compression_is_named() {
     assert_rounds_to(density_limit / precursor.density, 1.0 + 2.0 / 1.7, 1e-12);
 }
 
+/// Y = 2 G yields at e ρ0 = 2.72 ρ0, beyond the 1 + 2/1.7 = 2.18 ρ0 that one shock can compress to.
+#[test]
+fn an_elastic_limit_that_no_shock_reaches_is_named() {
+    let mut copper = library::material("porous-copper").unwrap();
+    copper.strength = Strength::PerfectPlastic { shear_modulus: 10e9, yield_strength: 20e9 };
+    let density = 8960.0 * 1.0_f64.exp();
+    let error = HugoniotError::ElasticLimitTooDense { material: "porous-copper".into(), density };
+    assert_eq!(elastic_limit(&copper), Err(error.clone()));
+    assert_eq!(overdriven_threshold(&copper), Err(error.clone()));
+    assert_eq!(piston(&copper, 100.0), Err(error.clone()));
+    assert!(!error.to_string().contains("0 m/s"), "{error}");
+}
+
 /// A Hugoniot of slope 1/2 ends where the shock is as slow as its piston, at 3930/(1 - 1/2) = 7860 m/s.
 #[test]
 fn a_shock_that_does_not_outrun_its_piston_is_named() {

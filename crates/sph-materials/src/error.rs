@@ -157,7 +157,29 @@ pub enum HugoniotError {
         /// Reference density of the solid [kg/m³].
         solid_density: f64,
     },
-    /// A stress, speed or rate of a porous medium that cannot be.
+    /// A number of a porous medium that is infinite or not a number.
+    #[error("{field} = {value} {unit} is not a finite number")]
+    NotFinite {
+        /// Which number.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A stress, speed or density of a porous medium that must be strictly greater than a bound.
+    #[error("{field} = {value} {unit} must be finite and greater than {least}")]
+    NotAbove {
+        /// Which number.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The bound.
+        least: f64,
+    },
+    /// A stress, rate or distension of a porous medium that must be at least a bound.
     #[error("{field} = {value} {unit} must be finite and not less than {least}")]
     BadNumber {
         /// Which number.

@@ -65,9 +65,17 @@ fn impossible_media_and_pistons_are_named() {
     assert!(matches!(new(1.0, Precursor::None), Err(HugoniotError::NotPorous { .. })));
     assert!(matches!(new(2.2, Precursor::None), Err(HugoniotError::AnomalousCompaction { .. })));
     let slow = Precursor::Moving { stress: 0.2e9, speed: 100.0 };
-    assert!(matches!(new(1.35, slow), Err(HugoniotError::BadNumber { field: "speed", .. })));
+    assert!(matches!(new(1.35, slow), Err(HugoniotError::NotAbove { field: "speed", .. })));
     let negative = Precursor::Standing { stress: -1.0 };
     assert!(matches!(new(1.35, negative), Err(HugoniotError::BadNumber { field: "stress", .. })));
+
+    // At its bound a number is refused, and the message says so: m = 1.4, so 8960/1.4 = 6400 kg/m³ and 6.4e7 Pa give 100 m/s.
+    let at_bound = Precursor::Moving { stress: 6.4e7, speed: 100.0 };
+    let Err(HugoniotError::NotAbove { value, least, .. }) = new(1.4, at_bound) else { panic!() };
+    assert!((value / least - 1.0).abs() < 1e-14, "{value} {least}");
+    let end = CompactionCurve::new(&solid, 6400.0, (1e8, 1900.0), 1e-9, 1e8).unwrap_err();
+    let text = "greatest_stress = 100000000 Pa must be finite and greater than 100000000";
+    assert_eq!(end.to_string(), text);
 
     let moving = new(1.35, Precursor::Moving { stress: 0.22e9, speed: 2600.0 }).unwrap();
     let shut = |u_p| moving.shut_pores(u_p, ShearBehind::None);

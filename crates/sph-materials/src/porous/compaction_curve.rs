@@ -102,7 +102,7 @@ impl CompactionCurve {
     fn with_form(medium: PorousMedium, form: Form, greatest_stress: f64) -> Result<Self, HugoniotError> {
         let precursor = medium.state_ahead();
         if !(greatest_stress.is_finite() && greatest_stress > precursor.pressure) {
-            return Err(HugoniotError::BadNumber {
+            return Err(HugoniotError::NotAbove {
                 field: "greatest_stress",
                 value: greatest_stress,
                 unit: "Pa",

@@ -183,7 +183,7 @@ impl PorousMedium {
         if speed.is_finite() && speed > least {
             Ok(())
         } else {
-            Err(HugoniotError::BadNumber { field: "speed", value: speed, unit: "m/s", least })
+            Err(HugoniotError::NotAbove { field: "speed", value: speed, unit: "m/s", least })
         }
     }
 

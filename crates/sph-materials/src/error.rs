@@ -231,6 +231,14 @@ pub enum HugoniotError {
         /// Speed of the precursor [m/s].
         precursor_speed: f64,
     },
+    /// The solid has no density for a pressure at the energy that goes with it.
+    #[error(
+        "no density of the solid from half of its reference density on has a pressure of {pressure} Pa at the energy that the jump conditions give"
+    )]
+    NoSolidDensity {
+        /// Pressure that was asked for [Pa].
+        pressure: f64,
+    },
     /// A compaction curve was asked outside the range of its data.
     #[error("stress {stress} Pa lies outside the curve's range, {least} to {greatest} Pa")]
     OutsideCurve {

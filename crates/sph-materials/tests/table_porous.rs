@@ -136,5 +136,25 @@ fn a_crush_curve_ends_at_the_jump_conditions_of_shut_pores() {
     assert!(alpha > 1.01, "{alpha}");
     let back =
         medium(1.3514, 0.20e9).distension_behind(-open.behind.longitudinal_stress, open.behind.density);
+    let back = back.unwrap();
     assert!((back / alpha - 1.0).abs() < 1e-12, "{back} {alpha}");
+}
+
+/// A state behind the wave that cannot be is an error, not a search without end.
+#[test]
+fn an_impossible_state_behind_the_wave_is_named() {
+    let medium = medium(1.3514, 0.20e9);
+    for stress in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let error = medium.distension_behind(stress, 8000.0).unwrap_err();
+        assert!(matches!(error, HugoniotError::NotFinite { field: "stress", .. }), "{error}");
+    }
+    for density in [f64::NAN, f64::INFINITY, 0.0, -8000.0] {
+        let error = medium.distension_behind(1e9, density).unwrap_err();
+        assert!(matches!(error, HugoniotError::NotAbove { field: "density", .. }), "{error}");
+    }
+    // Expansion by the wave leaves so little energy that no density comes to the stress; and half of ρ0 bears no such tension.
+    for (stress, density) in [(1e12, 1000.0), (1e12, 6630.0), (-5e11, 8000.0)] {
+        let error = medium.distension_behind(stress, density).unwrap_err();
+        assert_eq!(error, HugoniotError::NoSolidDensity { pressure: stress });
+    }
 }

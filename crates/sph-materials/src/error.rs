@@ -45,6 +45,14 @@ pub enum MaterialError {
         /// The bound.
         least: f64,
     },
+    /// The quasi-acoustic sound speed of a material whose reference state has no stiffness.
+    #[error(
+        "material `{material}`: no quasi-acoustic sound speed, since the bulk modulus at the reference density is zero; take the thermodynamic one"
+    )]
+    NoQuasiAcousticSpeed {
+        /// Name of the material.
+        material: String,
+    },
 }
 
 /// A material that the library cannot give.

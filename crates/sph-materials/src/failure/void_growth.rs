@@ -20,8 +20,8 @@
 //! T(α0) = T is the tensile strength at slow loading; the sphere's own theory has `T(α) = 2/3 Y
 //! ln(α/(α-1))`, of which only the shape is kept, since the strength of a real metal is set by what is in
 //! it. The factor `3/(4η) α(α-1)` is the exact one for incompressible radial flow: the power
-//! `-P dV/dt` equals `∫ 2η d:d` over the matrix. Softening: the yield strength falls to
-//! `Y (1 - φ/φ_c)`, `φ = 1 - 1/α`.
+//! `-P dV/dt` equals `∫ 2η d:d` over the matrix. Softening, measured from the first voids on so that an intact point has all
+//! of its strength: the yield strength falls to `Y (1 - (φ - φ0)/(φ_c - φ0))`, `φ = 1 - 1/α`, `φ0 = 1 - 1/α0`.
 //!
 //! At `φ = φ_c` the voids meet and the point is torn: from then on it carries pressure, and shear while
 //! it is under pressure, but never tension again. The gap must be closed, `ρ` back at its value without tension,

@@ -31,6 +31,20 @@ pub enum MaterialError {
         /// The bound.
         least: f64,
     },
+    /// Must be strictly less than a bound.
+    #[error("material `{material}`: {field} = {value} {unit} must be less than {bound}")]
+    NotBelow {
+        /// Name of the material.
+        material: String,
+        /// Field that is wrong.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The bound.
+        bound: f64,
+    },
     /// Must be at least a bound.
     #[error("material `{material}`: {field} = {value} {unit} must not be less than {least}")]
     BelowLeast {

@@ -120,10 +120,12 @@ impl Material {
     }
 
     fn fault(&self, parameter: &Parameter) -> MaterialError {
-        let Parameter { name: field, value, unit, least, least_allowed } = *parameter;
+        let Parameter { name: field, value, unit, least, least_allowed, below } = *parameter;
         let material = self.name.clone();
         if !value.is_finite() {
             MaterialError::NotFinite { material, field, value, unit }
+        } else if value >= below {
+            MaterialError::NotBelow { material, field, value, unit, bound: below }
         } else if least_allowed {
             MaterialError::BelowLeast { material, field, value, unit, least }
         } else {

@@ -68,12 +68,6 @@ impl Material {
         (self.bulk_sound_speed_squared(density, specific_internal_energy) + shear).sqrt()
     }
 
-    /// Transverse sound speed `c_t = √(G/ρ)` [m/s]; zero for a fluid.
-    #[inline]
-    pub fn transverse_sound_speed(&self, density: f64) -> f64 {
-        (self.strength.shear_modulus() / density).sqrt()
-    }
-
     /// Whether the thermodynamic sound speed of this state had to be lifted to its floor; never so for the
     /// quasi-acoustic model.
     #[inline]

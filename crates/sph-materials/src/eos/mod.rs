@@ -16,8 +16,9 @@
 //!
 //! # Adding a model
 //!
-//! One file with the four functions and the documentation that the others have, one variant, one arm in each
-//! `match` below, one row in the property tests (`tests/prop_eos.rs`).
+//! One file with the five functions and the documentation that the others have, one variant, one arm in each `match` below and
+//! in `src/hugoniot/principal.rs`. By hand, since nothing fails without: whether the arm of
+//! [`EquationOfState::density_limit`] gives the singular density, and the row in the property tests (`tests/prop_eos.rs`).
 
 pub mod ideal_gas;
 pub mod linear;

@@ -31,6 +31,20 @@ pub enum MaterialError {
         /// The bound.
         least: f64,
     },
+    /// Must be strictly less than a bound.
+    #[error("material `{material}`: {field} = {value} {unit} must be less than {bound}")]
+    NotBelow {
+        /// Name of the material.
+        material: String,
+        /// Field that is wrong.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The bound.
+        bound: f64,
+    },
     /// Must be at least a bound.
     #[error("material `{material}`: {field} = {value} {unit} must not be less than {least}")]
     BelowLeast {
@@ -44,6 +58,14 @@ pub enum MaterialError {
         unit: &'static str,
         /// The bound.
         least: f64,
+    },
+    /// The quasi-acoustic sound speed of a material whose reference state has no stiffness.
+    #[error(
+        "material `{material}`: no quasi-acoustic sound speed, since the bulk modulus at the reference density is zero; take the thermodynamic one"
+    )]
+    NoQuasiAcousticSpeed {
+        /// Name of the material.
+        material: String,
     },
 }
 
@@ -111,14 +133,24 @@ pub enum HugoniotError {
         /// Name of the material.
         material: String,
     },
+    /// The elastic limit lies at a density that no shock from rest reaches.
+    #[error(
+        "material `{material}` yields at {density} kg/m³ in uniaxial strain, and no shock from rest reaches that density: its yield strength is too high for its shear modulus"
+    )]
+    ElasticLimitTooDense {
+        /// Name of the material.
+        material: String,
+        /// Density at the elastic limit [kg/m³].
+        density: f64,
+    },
     /// No density gives the piston's velocity.
     #[error(
-        "no state behind the shock moves at {piston_velocity} m/s: energy conservation leaves no density beyond {density_limit} kg/m³"
+        "no state behind the shock moves at {piston_velocity} m/s: a single shock does not reach {density_limit} kg/m³"
     )]
     BeyondCompressionLimit {
         /// Piston velocity [m/s].
         piston_velocity: f64,
-        /// Density that no shock passes [kg/m³].
+        /// Density that no shock passes; infinite where it grows without bound before that velocity [kg/m³].
         density_limit: f64,
     },
     /// Even the weakest plastic wave overtakes the precursor.
@@ -147,7 +179,29 @@ pub enum HugoniotError {
         /// Reference density of the solid [kg/m³].
         solid_density: f64,
     },
-    /// A stress, speed or rate of a porous medium that cannot be.
+    /// A number of a porous medium that is infinite or not a number.
+    #[error("{field} = {value} {unit} is not a finite number")]
+    NotFinite {
+        /// Which number.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A stress, speed or density of a porous medium that must be strictly greater than a bound.
+    #[error("{field} = {value} {unit} must be finite and greater than {least}")]
+    NotAbove {
+        /// Which number.
+        field: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The bound.
+        least: f64,
+    },
+    /// A stress, rate or distension of a porous medium that must be at least a bound.
     #[error("{field} = {value} {unit} must be finite and not less than {least}")]
     BadNumber {
         /// Which number.
@@ -198,6 +252,14 @@ pub enum HugoniotError {
         wave_speed: f64,
         /// Speed of the precursor [m/s].
         precursor_speed: f64,
+    },
+    /// The solid has no density for a pressure at the energy that goes with it.
+    #[error(
+        "no density of the solid from half of its reference density on has a pressure of {pressure} Pa at the energy that the jump conditions give"
+    )]
+    NoSolidDensity {
+        /// Pressure that was asked for [Pa].
+        pressure: f64,
     },
     /// A compaction curve was asked outside the range of its data.
     #[error("stress {stress} Pa lies outside the curve's range, {least} to {greatest} Pa")]

@@ -75,12 +75,6 @@ impl Material {
         (self.bulk_sound_speed_squared(distension * density, energy) + shear).sqrt()
     }
 
-    /// Transverse sound speed `c_t = √(G/ρ)` [m/s]; zero for a fluid.
-    #[inline]
-    pub fn transverse_sound_speed(&self, density: f64) -> f64 {
-        (self.strength.shear_modulus() / density).sqrt()
-    }
-
     /// Whether the thermodynamic sound speed of this state had to be lifted to its floor; never so for the
     /// quasi-acoustic model.
     #[inline]
@@ -110,22 +104,29 @@ impl Material {
     ///
     /// # Errors
     ///
-    /// One [`MaterialError`] for each number that is not finite or out of its bounds.
+    /// One [`MaterialError`] for each number that is not finite or out of its bounds, and
+    /// [`MaterialError::NoQuasiAcousticSpeed`] where that speed is asked for and would be zero.
     pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
         let mut parameters =
             vec![Parameter::above("reference_density", self.reference_density, "kg/m³", 0.0)];
         parameters.extend(self.equation_of_state.parameters());
         parameters.extend(self.strength.parameters());
         parameters.extend(self.failure.parameters());
-        let faults: Vec<_> = parameters.iter().filter(|p| !p.is_good()).map(|p| self.fault(p)).collect();
+        let mut faults: Vec<_> = parameters.iter().filter(|p| !p.is_good()).map(|p| self.fault(p)).collect();
+        let bulk_modulus = self.equation_of_state.reference_bulk_modulus(self.reference_density);
+        if self.sound_speed == SoundSpeedModel::QuasiAcoustic && bulk_modulus == 0.0 {
+            faults.push(MaterialError::NoQuasiAcousticSpeed { material: self.name.clone() });
+        }
         if faults.is_empty() { Ok(()) } else { Err(faults) }
     }
 
     fn fault(&self, parameter: &Parameter) -> MaterialError {
-        let Parameter { name: field, value, unit, least, least_allowed } = *parameter;
+        let Parameter { name: field, value, unit, least, least_allowed, below } = *parameter;
         let material = self.name.clone();
         if !value.is_finite() {
             MaterialError::NotFinite { material, field, value, unit }
+        } else if value >= below {
+            MaterialError::NotBelow { material, field, value, unit, bound: below }
         } else if least_allowed {
             MaterialError::BelowLeast { material, field, value, unit, least }
         } else {
@@ -149,6 +150,23 @@ mod tests {
         assert_eq!(text.len(), 3, "{text:?}");
         assert!(text[0].contains("reference_density = -1 kg/m³"), "{}", text[0]);
         assert!(text[2].contains("yield_strength"), "{}", text[2]);
+    }
+
+    #[test]
+    fn a_gas_has_no_quasi_acoustic_speed() {
+        let gas = Material {
+            name: "air".into(),
+            reference_density: 1.2,
+            equation_of_state: EquationOfState::IdealGas(crate::eos::IdealGas { gamma: 1.4 }),
+            strength: Strength::Fluid,
+            failure: Failure::None,
+            sound_speed: SoundSpeedModel::Thermodynamic,
+        };
+        assert_eq!(gas.validate(), Ok(()));
+        let quasi_acoustic = Material { sound_speed: SoundSpeedModel::QuasiAcoustic, ..gas };
+        let material = "air".into();
+        assert_eq!(quasi_acoustic.validate(), Err(vec![MaterialError::NoQuasiAcousticSpeed { material }]));
+        assert_eq!(quasi_acoustic.longitudinal_sound_speed(1.2, 2e5), 0.0);
     }
 
     #[test]

@@ -65,9 +65,17 @@ fn impossible_media_and_pistons_are_named() {
     assert!(matches!(new(1.0, Precursor::None), Err(HugoniotError::NotPorous { .. })));
     assert!(matches!(new(2.2, Precursor::None), Err(HugoniotError::AnomalousCompaction { .. })));
     let slow = Precursor::Moving { stress: 0.2e9, speed: 100.0 };
-    assert!(matches!(new(1.35, slow), Err(HugoniotError::BadNumber { field: "speed", .. })));
+    assert!(matches!(new(1.35, slow), Err(HugoniotError::NotAbove { field: "speed", .. })));
     let negative = Precursor::Standing { stress: -1.0 };
     assert!(matches!(new(1.35, negative), Err(HugoniotError::BadNumber { field: "stress", .. })));
+
+    // At its bound a number is refused, and the message says so: m = 1.4, so 8960/1.4 = 6400 kg/m³ and 6.4e7 Pa give 100 m/s.
+    let at_bound = Precursor::Moving { stress: 6.4e7, speed: 100.0 };
+    let Err(HugoniotError::NotAbove { value, least, .. }) = new(1.4, at_bound) else { panic!() };
+    assert!((value / least - 1.0).abs() < 1e-14, "{value} {least}");
+    let end = CompactionCurve::new(&solid, 6400.0, (1e8, 1900.0), 1e-9, 1e8).unwrap_err();
+    let text = "greatest_stress = 100000000 Pa must be finite and greater than 100000000";
+    assert_eq!(end.to_string(), text);
 
     let moving = new(1.35, Precursor::Moving { stress: 0.22e9, speed: 2600.0 }).unwrap();
     let shut = |u_p| moving.shut_pores(u_p, ShearBehind::None);
@@ -128,5 +136,25 @@ fn a_crush_curve_ends_at_the_jump_conditions_of_shut_pores() {
     assert!(alpha > 1.01, "{alpha}");
     let back =
         medium(1.3514, 0.20e9).distension_behind(-open.behind.longitudinal_stress, open.behind.density);
+    let back = back.unwrap();
     assert!((back / alpha - 1.0).abs() < 1e-12, "{back} {alpha}");
+}
+
+/// A state behind the wave that cannot be is an error, not a search without end.
+#[test]
+fn an_impossible_state_behind_the_wave_is_named() {
+    let medium = medium(1.3514, 0.20e9);
+    for stress in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let error = medium.distension_behind(stress, 8000.0).unwrap_err();
+        assert!(matches!(error, HugoniotError::NotFinite { field: "stress", .. }), "{error}");
+    }
+    for density in [f64::NAN, f64::INFINITY, 0.0, -8000.0] {
+        let error = medium.distension_behind(1e9, density).unwrap_err();
+        assert!(matches!(error, HugoniotError::NotAbove { field: "density", .. }), "{error}");
+    }
+    // Expansion by the wave leaves so little energy that no density comes to the stress; and half of ρ0 bears no such tension.
+    for (stress, density) in [(1e12, 1000.0), (1e12, 6630.0), (-5e11, 8000.0)] {
+        let error = medium.distension_behind(stress, density).unwrap_err();
+        assert_eq!(error, HugoniotError::NoSolidDensity { pressure: stress });
+    }
 }

@@ -72,6 +72,42 @@ fn a_piston_beyond_the_limit_of_compression_is_named() {
     assert_rounds_to(density_limit / precursor.density, 1.0 + 2.0 / 1.7, 1e-12);
 }
 
+/// Y = 2 G yields at e ρ0 = 2.72 ρ0, beyond the 1 + 2/1.7 = 2.18 ρ0 that one shock can compress to.
+#[test]
+fn an_elastic_limit_that_no_shock_reaches_is_named() {
+    let mut copper = library::material("porous-copper").unwrap();
+    copper.strength = Strength::PerfectPlastic { shear_modulus: 10e9, yield_strength: 20e9 };
+    let density = 8960.0 * 1.0_f64.exp();
+    let error = HugoniotError::ElasticLimitTooDense { material: "porous-copper".into(), density };
+    assert_eq!(elastic_limit(&copper), Err(error.clone()));
+    assert_eq!(overdriven_threshold(&copper), Err(error.clone()));
+    assert_eq!(piston(&copper, 100.0), Err(error.clone()));
+    assert!(!error.to_string().contains("0 m/s"), "{error}");
+}
+
+/// A Hugoniot of slope 1/2 ends where the shock is as slow as its piston, at 3930/(1 - 1/2) = 7860 m/s.
+#[test]
+fn a_shock_that_does_not_outrun_its_piston_is_named() {
+    let mut copper = library::material("porous-copper").unwrap();
+    let EquationOfState::MieGruneisen(model) = &mut copper.equation_of_state else { panic!() };
+    model.hugoniot_slope = 0.5;
+    copper.strength = Strength::Fluid;
+    // u_s = 7855 m/s, ρ = ρ0 u_s/(u_s - u_p)
+    let last = principal(&copper, 7850.0).unwrap();
+    assert_rounds_to(last.behind.density / (8960.0 * 7855.0 / 5.0), 1.0, 1e-12);
+    for piston_velocity in [7860.0, 9000.0, 1e200] {
+        let density_limit = f64::INFINITY;
+        let error = HugoniotError::BeyondCompressionLimit { piston_velocity, density_limit };
+        assert_eq!(principal(&copper, piston_velocity), Err(error.clone()));
+        assert_eq!(piston(&copper, piston_velocity), Err(error));
+    }
+    // The others lose u_s - u_p to rounding, or the pressure overflows.
+    for name in ["copper-sound-wave", "aluminium-riemann", "aluminium-verney"] {
+        let error = principal(&library::material(name).unwrap(), 1e200).unwrap_err();
+        assert!(matches!(error, HugoniotError::BeyondCompressionLimit { .. }), "{name}: {error}");
+    }
+}
+
 /// So strong a solid that the plastic wave is the faster one from the start.
 #[test]
 fn a_precursor_that_is_overtaken_from_the_start_is_named() {

@@ -46,12 +46,12 @@ pub enum SurfaceTreatment {
     /// The rule as printed: I in place of L⁻¹ where the least eigenvalue of **L⁻¹** is below 0.75, and within a smoothing
     /// length of such particles. Flags almost nothing, since those eigenvalues rise at a surface.
     Printed {
-        /// I as well where det L is below this [-]; 0.01-0.1.
+        /// I as well where det L is below this [-]; 0.01-0.1, at most 0.5.
         determinant_floor: f64,
     },
     /// The rule as its source has it: least eigenvalue of **L** below 0.75.
     Intended {
-        /// I as well where det L is below this [-]; 0.01-0.1.
+        /// I as well where det L is below this [-]; 0.01-0.1, at most 0.5.
         determinant_floor: f64,
     },
     /// L⁻¹ everywhere.
@@ -207,8 +207,19 @@ impl Settings {
         if let Some(skin) = self.skin {
             check(within(skin, 0.0, 2.0), format!("skin = {skin} particle sizes is outside 0 to 2"));
         }
-        if let SurfaceTreatment::SpectralCap { cap } = self.surface {
-            check(within(cap, 1.0, 100.0), format!("cap = {cap} of the spectral cap is outside 1 to 100"));
+        match self.surface {
+            SurfaceTreatment::Printed { determinant_floor }
+            | SurfaceTreatment::Intended { determinant_floor } => check(
+                within(determinant_floor, 0.0, 0.5),
+                format!("determinant_floor = {determinant_floor} of the surface rule is outside 0 to 0.5"),
+            ),
+            SurfaceTreatment::SpectralCap { cap } => {
+                check(
+                    within(cap, 1.0, 100.0),
+                    format!("cap = {cap} of the spectral cap is outside 1 to 100"),
+                );
+            }
+            SurfaceTreatment::None => {}
         }
         if let Some(v) = self.volume_consistency {
             check(
@@ -251,6 +262,27 @@ impl Default for Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_floor_of_the_determinant_that_is_none_is_a_fault() {
+        let surfaces = [
+            |determinant_floor| SurfaceTreatment::Printed { determinant_floor },
+            |determinant_floor| SurfaceTreatment::Intended { determinant_floor },
+        ];
+        for surface in surfaces {
+            let faults = |floor| Settings { surface: surface(floor), ..Settings::default() }.faults();
+            for floor in [0.0, 0.01, 0.1, 0.5] {
+                assert_eq!(faults(floor), Vec::<String>::new(), "{floor}");
+            }
+            for floor in [f64::NAN, f64::INFINITY, -0.01, 0.51] {
+                let found = faults(floor);
+                assert!(found.len() == 1 && found[0].contains("determinant_floor"), "{floor}: {found:?}");
+            }
+        }
+        for scheme in Scheme::ALL {
+            assert_eq!(Settings::for_scheme(scheme).faults(), Vec::<String>::new(), "{scheme:?}");
+        }
+    }
 
     #[test]
     fn the_skin_ends_before_the_next_ring_of_the_lattice() {

@@ -47,12 +47,16 @@ pub struct Calibration {
 
 /// Calibrates a curve on the settled points; with `exponent` given P_e and P_s are fitted, else n as well.
 ///
-/// `None` where fewer points have open pores than there are parameters and one, or the fit ends at no curve.
+/// `None` where fewer points have open pores than there are parameters and one, where the solid cannot come to the stress
+/// of a point, or where the fit ends at no curve.
 pub fn calibrate(curve: &Curve, medium: &PorousMedium, exponent: Option<f64>) -> Option<Calibration> {
     let initial = medium.porosity();
-    let state = |p: &CurvePoint| (p.stress.value, medium.distension_behind(p.stress.value, p.density.value));
-    let states = curve.settled().map(state);
-    let (shut, open): (Vec<_>, Vec<_>) = states.partition(|(_, alpha)| alpha - 1.0 < SHUT);
+    let state = |p: &CurvePoint| {
+        let alpha = medium.distension_behind(p.stress.value, p.density.value).ok()?;
+        Some((p.stress.value, alpha))
+    };
+    let states: Vec<_> = curve.settled().map(state).collect::<Option<_>>()?;
+    let (shut, open): (Vec<_>, Vec<_>) = states.into_iter().partition(|(_, alpha)| alpha - 1.0 < SHUT);
     let parameters = 2 + usize::from(exponent.is_none());
     if open.len() <= parameters {
         return None;

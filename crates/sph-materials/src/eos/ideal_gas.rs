@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Thermodynamic sound speed: `c_b² = γ (γ - 1) e`. There is no cold pressure and so no
-//! quasi-acoustic speed (B = 0): such a material needs [`crate::SoundSpeedModel::Thermodynamic`].
+//! quasi-acoustic speed (B = 0): such a material needs [`crate::SoundSpeedModel::Thermodynamic`], and
+//! [`crate::Material::validate`] refuses it without.
 //!
 //! # Validity
 //!

@@ -16,8 +16,9 @@
 //!
 //! # Adding a model
 //!
-//! One file with the four functions and the documentation that the others have, one variant, one arm in each
-//! `match` below, one row in the property tests (`tests/prop_eos.rs`).
+//! One file with the five functions and the documentation that the others have, one variant, one arm in each `match` below and
+//! in `src/hugoniot/principal.rs`. By hand, since nothing fails without: whether the arm of
+//! [`EquationOfState::density_limit`] gives the singular density, and the row in the property tests (`tests/prop_eos.rs`).
 
 pub mod ideal_gas;
 pub mod linear;
@@ -128,22 +129,30 @@ pub(crate) struct Parameter {
     pub least: f64,
     /// Whether `least` itself is allowed.
     pub least_allowed: bool,
+    /// What the value must stay below; infinite where there is no such bound.
+    pub below: f64,
 }
 
 impl Parameter {
     /// A number that must be greater than `least`.
     pub const fn above(name: &'static str, value: f64, unit: &'static str, least: f64) -> Self {
-        Self { name, value, unit, least, least_allowed: false }
+        Self { name, value, unit, least, least_allowed: false, below: f64::INFINITY }
     }
 
     /// A number that must not be less than `least`.
     pub const fn at_least(name: &'static str, value: f64, unit: &'static str, least: f64) -> Self {
-        Self { name, value, unit, least, least_allowed: true }
+        Self { name, value, unit, least, least_allowed: true, below: f64::INFINITY }
     }
 
-    /// Whether the number is finite and meets its bound; not-a-number fails.
+    /// The same number, which must be less than `bound` as well.
+    pub const fn and_below(self, bound: f64) -> Self {
+        Self { below: bound, ..self }
+    }
+
+    /// Whether the number is finite and meets its bounds; not-a-number fails.
     pub fn is_good(&self) -> bool {
         self.value.is_finite()
+            && self.value < self.below
             && (self.value > self.least || (self.least_allowed && self.value == self.least))
     }
 }

@@ -20,8 +20,8 @@
 //! T(α0) = T is the tensile strength at slow loading; the sphere's own theory has `T(α) = 2/3 Y
 //! ln(α/(α-1))`, of which only the shape is kept, since the strength of a real metal is set by what is in
 //! it. The factor `3/(4η) α(α-1)` is the exact one for incompressible radial flow: the power
-//! `-P dV/dt` equals `∫ 2η d:d` over the matrix. Softening: the yield strength falls to
-//! `Y (1 - φ/φ_c)`, `φ = 1 - 1/α`.
+//! `-P dV/dt` equals `∫ 2η d:d` over the matrix. Softening, measured from the first voids on so that an intact point has all
+//! of its strength: the yield strength falls to `Y (1 - (φ - φ0)/(φ_c - φ0))`, `φ = 1 - 1/α`, `φ0 = 1 - 1/α0`.
 //!
 //! At `φ = φ_c` the voids meet and the point is torn: from then on it carries pressure, and shear while
 //! it is under pressure, but never tension again. The gap must be closed, `ρ` back at its value without tension,
@@ -55,7 +55,7 @@ pub struct VoidGrowth {
     pub initial_distension: f64,
     /// Viscosity `η` of the matrix [Pa s].
     pub viscosity: f64,
-    /// Porosity `φ_c` at which voids meet, 0 to 1 [-].
+    /// Porosity `φ_c` at which voids meet, above `φ0` and below 1 [-].
     pub coalescence_porosity: f64,
 }
 
@@ -108,8 +108,8 @@ impl VoidGrowth {
             Parameter::above("tensile_strength", self.tensile_strength, "Pa", 0.0),
             Parameter::above("initial_distension", self.initial_distension, "1", 1.0),
             Parameter::above("viscosity", self.viscosity, "Pa s", 0.0),
-            // Voids that have met from the beginning are none.
-            Parameter::above("coalescence_porosity", self.coalescence_porosity, "1", first),
+            // Voids that have met from the beginning are none, and no growth makes matter of voids alone.
+            Parameter::above("coalescence_porosity", self.coalescence_porosity, "1", first).and_below(1.0),
         ]
     }
 }
@@ -178,7 +178,7 @@ impl<F: Fn(f64) -> f64> Point<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Failure, library};
+    use crate::{Failure, MaterialError, library};
 
     const STRENGTH: f64 = 0.35e9;
 
@@ -214,6 +214,36 @@ mod tests {
         assert!(opened.strength_left > 0.8 && opened.strength_left < 0.87, "{}", opened.strength_left);
         let (_, torn) = stretch(1e4, 0.5);
         assert!(torn.damage.failed && torn.pressure == 0.0 && torn.strength_left == 0.0);
+    }
+
+    #[test]
+    fn the_check_knows_both_bounds_of_the_porosity_at_which_voids_meet() {
+        let mut copper = library::material("porous-copper").unwrap();
+        let mut faults = |coalescence_porosity: f64| {
+            let model = VoidGrowth { coalescence_porosity, ..VoidGrowth::of_strength(STRENGTH) };
+            copper.failure = Failure::VoidGrowth(model);
+            copper.validate().err().unwrap_or_default()
+        };
+        assert_eq!((faults(3.001e-4), faults(0.999)), (vec![], vec![]));
+        // First voids: φ0 = 1 - 1/1.0003 = 2.9991e-4.
+        let [MaterialError::NotAbove { least, .. }] = faults(2.999e-4)[..] else { panic!() };
+        assert!((least - 2.9991e-4).abs() < 1e-9, "{least}");
+        for value in [1.0, 30.0] {
+            let [MaterialError::NotBelow { value: found, bound: 1.0, .. }] = faults(value)[..] else {
+                panic!()
+            };
+            assert_eq!(found, value);
+        }
+    }
+
+    /// φ half way from φ0 to φ_c: half of the strength.
+    #[test]
+    fn strength_falls_from_the_first_voids_to_the_porosity_at_which_they_meet() {
+        let model = VoidGrowth { initial_distension: 1.25, ..VoidGrowth::of_strength(STRENGTH) };
+        // φ0 = 0.2, φ_c = 0.3, φ = 0.25: α = 4/3. No pressure, so nothing moves.
+        let damage = Damage { failed: false, distension: 4.0 / 3.0 / 1.25 };
+        let state = model.advance(damage, 8000.0, 1e-9, |_| 0.0);
+        assert!((state.strength_left - 0.5).abs() < 1e-12, "{}", state.strength_left);
     }
 
     #[test]

@@ -26,7 +26,8 @@
 //! Shocks as discontinuities, heat conduction and rate effects left out; elastic and plastic branch each convex
 //! in `V`, which holds for constant G and every equation of state here in compression. The thermodynamic
 //! limit of the Mie-Grüneisen model with strength is `ρ/ρ0 < 1 + 2/γ` (without strength the
-//! singular point is removable, and [`principal()`] goes on to `s_a/(s_a - 1)`).
+//! singular point is removable, and [`principal()`] goes on to `s_a/(s_a - 1)`; for `s_a < 1` it ends at
+//! `u_p = c_a/(1 - s_a)`).
 
 pub mod principal;
 
@@ -96,7 +97,8 @@ fn elastic_shear_stress(material: &Material, density: f64) -> f64 {
 ///
 /// # Errors
 ///
-/// [`HugoniotError::NoElasticLimit`] unless the strength is perfectly plastic.
+/// [`HugoniotError::NoElasticLimit`] unless the strength is perfectly plastic; [`HugoniotError::ElasticLimitTooDense`] where
+/// `Y/2G` is so great that no shock from rest reaches `ρ_ec`.
 pub fn elastic_limit(material: &Material) -> Result<Jump, HugoniotError> {
     let Strength::PerfectPlastic { shear_modulus, yield_strength } = material.strength else {
         return Err(HugoniotError::NoElasticLimit { material: material.name.clone() });
@@ -106,14 +108,15 @@ pub fn elastic_limit(material: &Material) -> Result<Jump, HugoniotError> {
     let shear_stress = |_: f64| yielded_shear_stress(material);
     Adiabat { material, ahead, shear_stress }
         .to_density(density)
-        .ok_or(HugoniotError::BeyondCompressionLimit { piston_velocity: 0.0, density_limit: density })
+        .ok_or_else(|| HugoniotError::ElasticLimitTooDense { material: material.name.clone(), density })
 }
 
 /// The waves ahead of a piston of the given velocity [m/s] in a solid at rest.
 ///
 /// # Errors
 ///
-/// A piston that does not push, or one so fast that no state moves with it.
+/// A piston that does not push, or one so fast that no state moves with it; those of [`elastic_limit`] but
+/// [`HugoniotError::NoElasticLimit`].
 pub fn piston(material: &Material, piston_velocity: f64) -> Result<PistonWaves, HugoniotError> {
     check_piston(piston_velocity)?;
     match material.strength {
@@ -138,7 +141,7 @@ pub fn piston(material: &Material, piston_velocity: f64) -> Result<PistonWaves, 
 ///
 /// # Errors
 ///
-/// No elastic limit; [`HugoniotError::PrecursorTooSlow`] where there is no two-wave structure at all;
+/// Those of [`elastic_limit`]; [`HugoniotError::PrecursorTooSlow`] where there is no two-wave structure at all;
 /// [`HugoniotError::NeverOverdriven`] where the equation of state ends before.
 pub fn overdriven_threshold(material: &Material) -> Result<f64, HugoniotError> {
     let precursor = elastic_limit(material)?;

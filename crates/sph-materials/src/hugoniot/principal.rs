@@ -9,6 +9,12 @@
 //! | linear-Γ | `w + √(w² + c0²)`, `w = ¼ (Γ + 1) u_p`, from `u_s² = c0² r/(1 - ½(Γ - 1)(r - 1))` |
 //! | ideal gas | `½ (γ + 1) u_p`: the strong shock, since it starts from rest at e = 0 |
 //! | logarithmic | `r u_p/(r - 1)` with `u_p² = (B/ρ0) ln r (1 - 1/r)`, one root |
+//!
+//! # Validity
+//!
+//! A shock outruns its piston, `u_s > u_p`. Mie-Grüneisen with `s_a < 1` does so for `u_p < c_a/(1 - s_a)` only: the density
+//! behind grows without bound there, and no faster piston has a shock. The others end where a double no longer tells `u_s`
+//! from `u_p`.
 
 use super::check_piston;
 use crate::eos::{EquationOfState, Logarithmic};
@@ -21,14 +27,20 @@ use crate::root::turning_point;
 ///
 /// # Errors
 ///
-/// [`HugoniotError::PistonVelocity`] for a piston that does not push.
+/// [`HugoniotError::PistonVelocity`] for a piston that does not push; [`HugoniotError::BeyondCompressionLimit`] where no shock
+/// outruns it, see [the module](self), or a number of the state behind is no longer finite.
 pub fn principal(material: &Material, piston_velocity: f64) -> Result<Jump, HugoniotError> {
     check_piston(piston_velocity)?;
     let (rho0, u_p) = (material.reference_density, piston_velocity);
     let u_s = shock_velocity(&material.equation_of_state, rho0, u_p);
     let pressure = rho0 * u_s * u_p;
+    let density = rho0 * u_s / (u_s - u_p);
+    if !(u_s > u_p && density.is_finite() && pressure.is_finite()) {
+        let density_limit = material.equation_of_state.density_limit(rho0);
+        return Err(HugoniotError::BeyondCompressionLimit { piston_velocity, density_limit });
+    }
     let behind = ShockState {
-        density: rho0 * u_s / (u_s - u_p),
+        density,
         particle_velocity: u_p,
         longitudinal_stress: -pressure,
         pressure,

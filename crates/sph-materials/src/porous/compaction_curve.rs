@@ -50,6 +50,7 @@ enum Form {
 pub struct CompactionCurve {
     medium: PorousMedium,
     precursor: ShockState,
+    precursor_distension: f64,
     form: Form,
     greatest_stress: f64,
 }
@@ -70,7 +71,8 @@ impl CompactionCurve {
     ///
     /// # Errors
     ///
-    /// As [`PorousMedium::new`]; a decay or an end of the data that cannot be.
+    /// As [`PorousMedium::new`]; a decay or an end of the data that cannot be; [`HugoniotError::NoSolidDensity`] behind the
+    /// precursor.
     pub fn new(
         solid: &Material,
         initial_density: f64,
@@ -89,7 +91,8 @@ impl CompactionCurve {
     ///
     /// # Errors
     ///
-    /// Numbers that make no curve; an end that does not exceed the stress of the precursor.
+    /// Numbers that make no curve; an end that does not exceed the stress of the precursor;
+    /// [`HugoniotError::NoSolidDensity`] behind the precursor.
     pub fn crush(
         medium: PorousMedium,
         curve: CrushCurve,
@@ -102,20 +105,22 @@ impl CompactionCurve {
     fn with_form(medium: PorousMedium, form: Form, greatest_stress: f64) -> Result<Self, HugoniotError> {
         let precursor = medium.state_ahead();
         if !(greatest_stress.is_finite() && greatest_stress > precursor.pressure) {
-            return Err(HugoniotError::BadNumber {
+            return Err(HugoniotError::NotAbove {
                 field: "greatest_stress",
                 value: greatest_stress,
                 unit: "Pa",
                 least: precursor.pressure,
             });
         }
-        Ok(Self { medium, precursor, form, greatest_stress })
+        let energy = precursor.specific_internal_energy;
+        let solid_density = medium.solid_density(precursor.pressure, |_| energy)?;
+        let precursor_distension = solid_density / precursor.density;
+        Ok(Self { medium, precursor, precursor_distension, form, greatest_stress })
     }
 
     /// Distension `α1` behind the precursor [1].
     pub fn precursor_distension(&self) -> f64 {
-        let ahead = &self.precursor;
-        self.medium.solid_density(ahead.pressure, |_| ahead.specific_internal_energy) / ahead.density
+        self.precursor_distension
     }
 
     /// Distension `α` behind the main wave at a stress [Pa] within the data [1].
@@ -124,7 +129,7 @@ impl CompactionCurve {
             Form::Crush(curve) => curve.distension(stress),
             Form::Exponential(decay) => {
                 let left = (-decay * (stress - self.precursor.pressure)).exp();
-                1.0 + (self.precursor_distension() - 1.0) * left
+                1.0 + (self.precursor_distension - 1.0) * left
             }
         }
     }
@@ -133,25 +138,26 @@ impl CompactionCurve {
     ///
     /// # Errors
     ///
-    /// [`HugoniotError::OutsideCurve`] outside the data; [`HugoniotError::PrecursorOvertaken`].
+    /// [`HugoniotError::OutsideCurve`] outside the data; [`HugoniotError::PrecursorOvertaken`];
+    /// [`HugoniotError::NoSolidDensity`] where the solid does not come to that stress.
     pub fn wave_of_stress(&self, stress: f64) -> Result<Jump, HugoniotError> {
         let ahead = self.precursor;
         if !(stress > ahead.pressure && stress <= self.greatest_stress) {
             let (least, greatest) = (ahead.pressure, self.greatest_stress);
             return Err(HugoniotError::OutsideCurve { stress, least, greatest });
         }
-        let jump = self.jump_to(stress);
+        let jump = self.jump_to(stress)?;
         self.medium.slower_than_precursor(jump)
     }
 
-    fn jump_to(&self, stress: f64) -> Jump {
+    fn jump_to(&self, stress: f64) -> Result<Jump, HugoniotError> {
         let ahead = self.precursor;
         let alpha = self.distension(stress);
         let volume_loss = |rho_s: f64| 1.0 / ahead.density - alpha / rho_s;
         let energy = |rho_s: f64| {
             ahead.specific_internal_energy + 0.5 * (stress + ahead.pressure) * volume_loss(rho_s)
         };
-        let rho_s = self.medium.solid_density(stress, energy);
+        let rho_s = self.medium.solid_density(stress, energy)?;
         let mass_flux = ((stress - ahead.pressure) / volume_loss(rho_s)).sqrt();
         let behind = ShockState {
             density: rho_s / alpha,
@@ -160,24 +166,26 @@ impl CompactionCurve {
             pressure: stress,
             specific_internal_energy: energy(rho_s),
         };
-        Jump { ahead, behind, wave_speed: ahead.particle_velocity + mass_flux / ahead.density }
+        Ok(Jump { ahead, behind, wave_speed: ahead.particle_velocity + mass_flux / ahead.density })
     }
 
     /// The main wave ahead of a piston [m/s].
     ///
     /// # Errors
     ///
-    /// A piston that does not push, is slower than the matter behind the precursor, or too fast for the data.
+    /// A piston that does not push, is slower than the matter behind the precursor, or too fast for the data; as
+    /// [`CompactionCurve::wave_of_stress`].
     pub fn wave(&self, piston_velocity: f64) -> Result<Jump, HugoniotError> {
         check_piston(piston_velocity)?;
         self.medium.state_ahead_of(piston_velocity)?;
-        let velocity = |stress: f64| self.jump_to(stress).behind.particle_velocity;
-        let greatest = velocity(self.greatest_stress);
+        let velocity = |stress: f64| self.jump_to(stress).map(|jump| jump.behind.particle_velocity);
+        let greatest = velocity(self.greatest_stress)?;
         if piston_velocity > greatest {
             return Err(HugoniotError::BeyondCurve { piston_velocity, greatest });
         }
         let least_stress = self.precursor.pressure * (1.0 + 1e-12);
-        let stress = turning_point(least_stress, self.greatest_stress, |p| velocity(p) >= piston_velocity);
+        let is_fast_enough = |p: f64| velocity(p).is_ok_and(|u| u >= piston_velocity);
+        let stress = turning_point(least_stress, self.greatest_stress, is_fast_enough);
         self.wave_of_stress(stress)
     }
 

@@ -50,23 +50,24 @@ impl CrushCurve {
     ///
     /// # Errors
     ///
-    /// [`HugoniotError::BadNumber`] for pressures that do not rise, a distension below 1 or an exponent below 1.
+    /// [`HugoniotError::NotFinite`] for a pressure `P_e` without end, [`HugoniotError::NotAbove`] for pressures that do not
+    /// rise, [`HugoniotError::BadNumber`] for a distension or an exponent below 1.
     pub fn check(&self) -> Result<(), HugoniotError> {
-        let bounds = [
-            ("solid_pressure", self.solid_pressure, "Pa", self.elastic_pressure.max(0.0)),
-            ("initial_distension", self.initial_distension, "", 1.0),
-            ("exponent", self.exponent, "", 1.0),
-        ];
-        for (field, value, unit, least) in bounds {
-            if !(value.is_finite() && value >= least && (field != "solid_pressure" || value > least)) {
-                return Err(HugoniotError::BadNumber { field, value, unit, least });
+        if !self.elastic_pressure.is_finite() {
+            let (field, value) = ("elastic_pressure", self.elastic_pressure);
+            return Err(HugoniotError::NotFinite { field, value, unit: "Pa" });
+        }
+        let least = self.elastic_pressure.max(0.0);
+        if !(self.solid_pressure.is_finite() && self.solid_pressure > least) {
+            let (field, value) = ("solid_pressure", self.solid_pressure);
+            return Err(HugoniotError::NotAbove { field, value, unit: "Pa", least });
+        }
+        for (field, value) in [("initial_distension", self.initial_distension), ("exponent", self.exponent)] {
+            if !(value.is_finite() && value >= 1.0) {
+                return Err(HugoniotError::BadNumber { field, value, unit: "", least: 1.0 });
             }
         }
-        if self.elastic_pressure.is_finite() {
-            return Ok(());
-        }
-        let value = self.elastic_pressure;
-        Err(HugoniotError::BadNumber { field: "elastic_pressure", value, unit: "Pa", least: f64::MIN })
+        Ok(())
     }
 
     /// `α` at a pressure [Pa] of first loading [1].
@@ -93,12 +94,15 @@ mod tests {
     #[test]
     fn impossible_curves_are_named() {
         let field = |e, s, a| match CrushCurve::quadratic(e, s, a) {
-            Err(HugoniotError::BadNumber { field, .. }) => field,
+            Err(HugoniotError::NotFinite { field, .. }) => (field, "finite"),
+            Err(HugoniotError::NotAbove { field, .. }) => (field, "above"),
+            Err(HugoniotError::BadNumber { field, .. }) => (field, "at least"),
             other => panic!("{other:?}"),
         };
-        assert_eq!(field(0.8e9, 0.8e9, 1.35), "solid_pressure");
-        assert_eq!(field(0.2e9, 0.8e9, 0.9), "initial_distension");
-        assert_eq!(field(f64::NEG_INFINITY, 0.8e9, 1.35), "elastic_pressure");
-        assert_eq!(field(0.2e9, f64::NAN, 1.35), "solid_pressure");
+        assert_eq!(field(0.8e9, 0.8e9, 1.35), ("solid_pressure", "above"));
+        assert_eq!(field(0.2e9, 0.8e9, 0.9), ("initial_distension", "at least"));
+        assert_eq!(field(f64::NEG_INFINITY, 0.8e9, 1.35), ("elastic_pressure", "finite"));
+        assert_eq!(field(f64::NAN, 0.8e9, 1.35), ("elastic_pressure", "finite"));
+        assert_eq!(field(0.2e9, f64::NAN, 1.35), ("solid_pressure", "above"));
     }
 }

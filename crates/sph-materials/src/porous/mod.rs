@@ -73,6 +73,9 @@ use crate::material::Material;
 use crate::root::turning_point;
 use crate::shock::Adiabat;
 
+/// Share of a singular density up to which the solid's density is searched.
+const BEFORE_THE_LIMIT: f64 = 1.0 - 1e-9;
+
 /// What runs ahead of the compaction wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Precursor {
@@ -183,7 +186,7 @@ impl PorousMedium {
         if speed.is_finite() && speed > least {
             Ok(())
         } else {
-            Err(HugoniotError::BadNumber { field: "speed", value: speed, unit: "m/s", least })
+            Err(HugoniotError::NotAbove { field: "speed", value: speed, unit: "m/s", least })
         }
     }
 
@@ -268,22 +271,40 @@ impl PorousMedium {
 
     /// Distension `α = ρ_s/ρ` of matter of a stress [Pa] and density [kg/m³] behind the compaction
     /// wave: the solid at that stress, strengthless, and at the energy that the jump conditions give.
-    pub fn distension_behind(&self, stress: f64, density: f64) -> f64 {
+    ///
+    /// # Errors
+    ///
+    /// A stress that is not finite or a density that is not positive and finite; [`HugoniotError::NoSolidDensity`] where
+    /// both do not go together, so that the solid does not come to that stress at that energy.
+    pub fn distension_behind(&self, stress: f64, density: f64) -> Result<f64, HugoniotError> {
+        if !stress.is_finite() {
+            return Err(HugoniotError::NotFinite { field: "stress", value: stress, unit: "Pa" });
+        }
+        if !(density.is_finite() && density > 0.0) {
+            let (field, value, unit) = ("density", density, "kg/m³");
+            return Err(HugoniotError::NotAbove { field, value, unit, least: 0.0 });
+        }
         let ahead = self.state_ahead();
         let volume_loss = 1.0 / ahead.density - 1.0 / density;
         let energy = ahead.specific_internal_energy + 0.5 * (stress + ahead.pressure) * volume_loss;
-        self.solid_density(stress, |_| energy) / density
+        Ok(self.solid_density(stress, |_| energy)? / density)
     }
 
     /// Density [kg/m³] at which the solid has a pressure [Pa], its energy [J/kg] being a function of that
-    /// density.
-    fn solid_density(&self, pressure: f64, energy: impl Fn(f64) -> f64) -> f64 {
+    /// density. From half of the reference density to the equation of state's limit; at a given energy the pressure
+    /// may have a greatest value before.
+    fn solid_density(&self, pressure: f64, energy: impl Fn(f64) -> f64) -> Result<f64, HugoniotError> {
         let is_dense_enough = |density: f64| self.solid.pressure(density, energy(density)) >= pressure;
-        let mut high = self.solid.reference_density;
-        while !is_dense_enough(high) {
-            high *= 1.01;
+        let rho0 = self.solid.reference_density;
+        let highest = BEFORE_THE_LIMIT * self.solid.equation_of_state.density_limit(rho0).min(f64::MAX);
+        let (low, mut high) = (0.5 * rho0, rho0);
+        while !is_dense_enough(high) && high < highest {
+            high = (1.01 * high).min(highest);
         }
-        turning_point(0.5 * self.solid.reference_density, high, is_dense_enough)
+        if is_dense_enough(low) || !is_dense_enough(high) {
+            return Err(HugoniotError::NoSolidDensity { pressure });
+        }
+        Ok(turning_point(low, high, is_dense_enough))
     }
 
     fn state_ahead_of(&self, piston_velocity: f64) -> Result<ShockState, HugoniotError> {

@@ -1,10 +1,11 @@
 //! The command line of `hugoniot`: what each command does, and which exit code follows.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
+
+use sph_io::console;
 
 pub use crate::arguments::{Arguments, Command};
 use crate::config::units::{LengthKind, show};
@@ -32,7 +33,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
     let color = arguments.color.is_on();
     sph_io::progress::set_color(color);
     match arguments.command {
-        Command::Init { template } => Ok(init(template.as_deref())),
+        Command::Init { template } => init(template.as_deref()),
         Command::Check { case, json, threads, picture } => check_case(&case, json, threads, picture, color),
         Command::Run { case, up, resolutions, out, threads, resume, replace, keep_every, quiet, json } => {
             let earlier = match (resume, replace) {
@@ -49,38 +50,36 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<u8> {
         }
         Command::Status { folder, json } => show_status(&folder, json),
         Command::Completions { shell } => {
-            std::io::stdout().write_all(&shell::completions(shell))?;
+            console::print(String::from_utf8_lossy(&shell::completions(shell)))?;
             Ok(SUCCESS)
         }
         Command::Man { folder } => {
             let n_pages = shell::write_manual(&folder)?;
-            println!("{n_pages} pages in {}", folder.display());
+            console::print_line(format_args!("{n_pages} pages in {}", folder.display()))?;
             Ok(SUCCESS)
         }
         Command::Schema { of } => {
-            print!("{}", of.text());
+            console::print(of.text())?;
             Ok(SUCCESS)
         }
     }
 }
 
-fn init(name: Option<&str>) -> u8 {
+fn init(name: Option<&str>) -> anyhow::Result<u8> {
     let names = template::names();
     let Some(name) = name else {
-        println!("{}", names.join("\n"));
-        return SUCCESS;
+        console::print_line(names.join("\n"))?;
+        return Ok(SUCCESS);
     };
     match template::text(name) {
         Some(text) => {
-            print!("{text}");
-            SUCCESS
+            console::print(text)?;
+            Ok(SUCCESS)
         }
         None => {
-            eprintln!(
-                "error: there is no template {name:?}; hint: {}",
-                config::fault::name_hint(name, &names)
-            );
-            BAD_INPUT
+            let hint = config::fault::name_hint(name, &names);
+            console::note(format_args!("error: there is no template {name:?}; hint: {hint}"));
+            Ok(BAD_INPUT)
         }
     }
 }
@@ -92,7 +91,7 @@ fn load(path: &Path, color: bool) -> Option<(String, config::Case)> {
         let case = config::read(&text, path, None)?;
         Ok((text, case))
     };
-    read().map_err(|error| eprintln!("{}", error.render(color).trim_end())).ok()
+    read().map_err(|error| console::note(error.render(color).trim_end())).ok()
 }
 
 /// Tells how far the run in a folder is.
@@ -103,13 +102,13 @@ fn show_status(folder: &Path, json: bool) -> anyhow::Result<u8> {
             true => "the folder of results, as `hugoniot check` names it".to_owned(),
             false => format!("the folder of one run, such as {}", below.join(", ")),
         };
-        eprintln!("error: {}: no run has written here; hint: {hint}", folder.display());
+        console::note(format_args!("error: {}: no run has written here; hint: {hint}", folder.display()));
         return Ok(BAD_INPUT);
     };
     if json {
-        println!("{}", serde_json::to_string_pretty(&found)?);
+        console::print_line(serde_json::to_string_pretty(&found)?)?;
     } else {
-        print!("{}", found.to_text());
+        console::print(found.to_text())?;
     }
     Ok(SUCCESS)
 }
@@ -123,16 +122,16 @@ fn check_case(
 ) -> anyhow::Result<u8> {
     let Some((_, case)) = load(path, color) else { return Ok(BAD_INPUT) };
     if let Err(error) = load_data(&case) {
-        eprintln!("error: {error}");
+        console::note(format_args!("error: {error}"));
         return Ok(BAD_INPUT);
     }
     let picture = picture.unwrap_or_else(|| Path::new(&case.output.directory).join("sample.png"));
     let mut check = check::Check::new(case, threads.map_or_else(available_threads, usize::from));
     check.draw(&picture);
     if json {
-        println!("{}", serde_json::to_string_pretty(&check)?);
+        console::print_line(serde_json::to_string_pretty(&check)?)?;
     } else {
-        print!("{}", check.to_text());
+        console::print(check.to_text())?;
     }
     Ok(SUCCESS)
 }
@@ -169,7 +168,7 @@ impl Changes {
         let refusals: Vec<String> =
             refusals.map(|(text, hint)| format!("error: {text}; hint: {hint}")).collect();
         if !refusals.is_empty() {
-            eprintln!("{}", refusals.join("\n"));
+            console::note(refusals.join("\n"));
         }
         !refusals.is_empty()
     }
@@ -191,15 +190,15 @@ fn study_cases(text: &str, path: &Path, changes: &Changes, color: bool) -> Optio
         let case = config::read(text, path, Some(size));
         let told = |error: config::CaseError| {
             let size = show::<LengthKind>(size);
-            eprintln!("with --resolutions {size}:\n{}", error.render(color).trim_end());
+            console::note(format_args!("with --resolutions {size}:\n{}", error.render(color).trim_end()));
         };
         let mut case = case.map_err(told).ok()?;
         changes.apply(&mut case);
         if case.refinement.is_some() {
-            eprintln!(
+            console::note(format_args!(
                 "error: {}: an adaptive sweep chooses other points at each particle size; hint: --up names the points",
                 path.display()
-            );
+            ));
             return None;
         }
         cases.push(case);
@@ -233,11 +232,11 @@ fn run_case(path: &Path, changes: Changes, mut options: RunOptions, color: bool)
         error.context(format!("the run has stopped (once this is mended, go on with: {go_on})"))
     })?;
     if end == RunEnd::Interrupted {
-        eprintln!("stopped; go on with: {go_on}");
+        console::note(format_args!("stopped; go on with: {go_on}"));
     }
     Ok(match end {
         RunEnd::Refused(reason) => {
-            eprintln!("error: {reason}");
+            console::note(format_args!("error: {reason}"));
             BAD_INPUT
         }
         RunEnd::Done => SUCCESS,
@@ -254,7 +253,7 @@ fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
         if seen.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        eprintln!("interrupted: writing what was computed; again to stop at once");
+        console::note(format_args!("interrupted: writing what was computed; again to stop at once"));
     })?;
     Ok(flag)
 }

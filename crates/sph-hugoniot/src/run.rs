@@ -6,10 +6,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
 use anyhow::{Context, Result};
-use sph_io::IoError;
-use sph_io::clock;
 use sph_io::lock::FolderLock;
 use sph_io::progress::{Mode, Progress};
+use sph_io::{IoError, clock, console};
 use sph_riemann::StageTimes;
 
 use crate::config::Case;
@@ -104,7 +103,7 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
     };
     let report = Report::create(&options.folder, case, case_text)?;
     let board = StatusBoard::new(&options.folder, &case.name, &options.go_on);
-    let to_its_end = || -> Result<RunEnd> {
+    let to_its_end = || -> Result<(RunEnd, String)> {
         let (outcomes, way_out) = rounds(case, &sample, &report, &board, options, interrupt)?;
         let finished: Vec<&PointOutcome> = outcomes.iter().collect();
         let curves = Curves::new(case, &sample, &finished, &data);
@@ -120,15 +119,17 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         let end = end_of(&finished, way_out);
         board.finish(end.word());
         let seconds = started.elapsed().as_secs_f64();
-        if options.json {
-            println!("{:#}", summary::json(&end, &finished, report.folder(), seconds));
-        } else if !options.quiet {
-            print_summary(&curves, &finished, report.folder(), seconds);
-        }
-        Ok(end)
+        let words = match (options.json, options.quiet) {
+            (true, _) => format!("{:#}\n", summary::json(&end, &finished, report.folder(), seconds)),
+            (false, false) => summary_text(&curves, &finished, report.folder(), seconds),
+            (false, true) => String::new(),
+        };
+        Ok((end, words))
     };
     // Without this word the run would look killed.
-    to_its_end().inspect_err(|_| board.break_off())
+    let (end, words) = to_its_end().inspect_err(|_| board.break_off())?;
+    console::print(words)?;
+    Ok(end)
 }
 
 /// Makes the folder and holds it for this process; how the run ends if another is at work there.
@@ -258,25 +259,24 @@ fn end_of(outcomes: &[&PointOutcome], way_out: WayOut) -> RunEnd {
     }
 }
 
-fn print_summary(curves: &Curves<'_>, outcomes: &[&PointOutcome], folder: &Path, seconds: f64) {
+fn summary_text(curves: &Curves<'_>, outcomes: &[&PointOutcome], folder: &Path, seconds: f64) -> String {
     let mut stages = StageTimes::default();
     outcomes.iter().for_each(|o| stages.merge(&o.stages));
-    println!("{}", summary::points(outcomes).to_text());
-    curves.lines().iter().for_each(|line| println!("{line}"));
-    println!();
-    println!("{}", summary::stages(&stages).to_text());
+    let mut lines = vec![summary::points(outcomes).to_text()];
+    lines.extend(curves.lines());
+    lines.extend([String::new(), summary::stages(&stages).to_text()]);
     let steps: u64 = outcomes.iter().map(|o| o.particle_steps).sum();
     let core_seconds: f64 = outcomes.iter().map(|o| o.wall_seconds).sum();
     let rate = steps as f64 / core_seconds / 1e6;
-    println!(
+    lines.push(format!(
         "{seconds:.1} s; {rate:.2} million particle-steps/s in a point; lists rebuilt {} times; \
          results in {}, open report.html there",
         stages.rebuilds,
         folder.display()
-    );
-    for line in monitors::interventions(outcomes) {
-        println!("bound that acted: {line}");
-    }
+    ));
+    lines.extend(monitors::interventions(outcomes).iter().map(|line| format!("bound that acted: {line}")));
+    lines.push(String::new());
+    lines.join("\n")
 }
 
 /// Keeps the state of a sweep and what is shown of it.
@@ -350,7 +350,7 @@ impl Watch for Watcher<'_> {
         self.board.ended(&outcome, self.sweep.sample.cell);
         let line = summary::line(&outcome);
         match outcome.status {
-            Status::Failed(_) => eprintln!("{line}"),
+            Status::Failed(_) => console::note(&line),
             _ => self.note(&line),
         }
         let mut state = self.state();

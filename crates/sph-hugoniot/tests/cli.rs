@@ -91,3 +91,24 @@ fn help_shows_examples() {
         assert!(help.contains(code), "{code}");
     }
 }
+
+/// A reader that has gone wants no more; a full disk is told. Neither is a panic.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_cannot_be_written_is_no_panic() {
+    let plain = || std::process::Command::new(env!("CARGO_BIN_EXE_hugoniot"));
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    for arguments in [&["init", "porous-copper"][..], &["schema", "table"], &["completions", "bash"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = plain().args(arguments).stdout(writer).output().unwrap();
+        assert_eq!((output.status.code(), &output.stderr[..]), (Some(0), &b""[..]), "{arguments:?}");
+        let output = plain().args(arguments).stdout(full()).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {told}");
+        assert!(told.starts_with("error: standard output cannot be written: "), "{arguments:?}: {told}");
+        // Nor does it matter whether faults can be told.
+        let status = plain().args(["check", "nowhere.ron"]).stderr(full()).status().unwrap();
+        assert_eq!(status.code(), Some(2));
+    }
+}

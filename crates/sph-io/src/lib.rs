@@ -1,4 +1,4 @@
-//! What leaves and enters the process: tables, plots, field images, ParaView snapshots, reports, checkpoints, progress.
+//! What leaves and enters the process: tables, plots, field images, ParaView snapshots, reports, checkpoints, progress, words to the user.
 //!
 //! The crate knows no physics: slices, names and units go in, files come out. Every file is written atomically
 //! ([`atomic`]): whole or not at all. Every error ([`IoError`]) names its path. Folders are not created.
@@ -26,6 +26,7 @@ pub mod atomic;
 pub mod checkpoint;
 pub mod clock;
 mod color;
+pub mod console;
 mod draw;
 mod error;
 pub mod field_image;

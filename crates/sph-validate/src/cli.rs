@@ -8,8 +8,8 @@ use std::time::SystemTime;
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
-use sph_io::machine;
 use sph_io::progress::{Mode, Progress};
+use sph_io::{console, machine};
 
 use crate::case::{Case, SchemeName, Tier};
 use crate::error::ValidateError;
@@ -117,7 +117,7 @@ pub fn execute(arguments: &Arguments) -> Result<u8, ValidateError> {
             Ok(suite) => validate(arguments, &[suite.as_ref()]),
             Err(error) => {
                 let color = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-                eprintln!("{}", error.render(color).trim_end());
+                console::note(error.render(color).trim_end());
                 Ok(BAD_INPUT)
             }
         };
@@ -153,15 +153,20 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let finished = ended.iter().filter(|ended| ended.result.is_ok()).count();
     progress.finish(&format!("{finished} of {} runs", ended.len()));
     if is_interrupted(&ended) {
-        eprintln!("stopped; {finished} finished runs are kept. Go on with: {}", arguments.go_on());
+        let go_on = arguments.go_on();
+        console::note(format_args!("stopped; {finished} finished runs are kept. Go on with: {go_on}"));
         return Ok(INTERRUPTED);
     }
     let provenance = provenance(arguments.command(), begun, taken_over);
     let report = Report::new(provenance, arguments.tier, &ended)?;
     write_files(&report, &ended, &arguments.out)?;
-    print_tables(&report);
+    let told = console::print(tables(&report));
+    told.map_err(|error| ValidateError::Output { path: "the tables".into(), reason: error.to_string() })?;
     let failed = ended.iter().filter_map(|ended| ended.result.as_ref().err());
-    let worst = failed.inspect(|error| eprintln!("error: {error}")).map(ValidateError::exit_code).max();
+    let worst = failed
+        .inspect(|error| console::note(format_args!("error: {error}")))
+        .map(ValidateError::exit_code)
+        .max();
     let out_of_date = arguments.strict && report.mended().next().is_some();
     let gate_missed = report.unexplained().next().is_some() || out_of_date;
     Ok(worst.unwrap_or(if gate_missed { GATE_MISSED } else { PASSED }))
@@ -181,7 +186,7 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
         if seen.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        eprintln!("interrupted: finished runs are kept; again to stop at once");
+        console::note("interrupted: finished runs are kept; again to stop at once");
     });
     flag
 }
@@ -197,26 +202,26 @@ fn write_files(report: &Report, ended: &[Ended<'_>], folder: &Path) -> Result<()
     page(report, ended)?.write(&path).map_err(|error| fault(path, error.to_string()))
 }
 
-fn print_tables(report: &Report) {
-    for suite in &report.suites {
-        println!("{}", report.table(suite));
-    }
-    match report.n_gates() {
-        0 => println!("there are no gates: the figures stand beside their references"),
-        _ => println!("{}", report.tally()),
-    }
+/// The tables of all suites, the tally, and each gate that was missed or is out of date.
+fn tables(report: &Report) -> String {
+    let mut lines: Vec<String> = report.suites.iter().map(|suite| report.table(suite).to_string()).collect();
+    lines.push(match report.n_gates() {
+        0 => "there are no gates: the figures stand beside their references".into(),
+        _ => report.tally(),
+    });
     for row in report.failures() {
         let word = if row.known_miss.is_some() { "known miss" } else { "missed" };
         let cause = row.known_miss.as_ref().map_or(String::new(), |cause| format!(": {cause}"));
-        println!("{word}: {}{cause}", judged(row));
+        lines.push(format!("{word}: {}{cause}", judged(row)));
     }
     for row in report.mended() {
-        println!(
-            "a known miss passes: {}; take its entry out of validation/{}/gates.ron",
-            judged(row),
-            row.suite
-        );
+        let (figure, suite) = (judged(row), &row.suite);
+        lines.push(format!(
+            "a known miss passes: {figure}; take its entry out of validation/{suite}/gates.ron"
+        ));
     }
+    lines.push(String::new());
+    lines.join("\n")
 }
 
 /// A figure with its gate, in a line.

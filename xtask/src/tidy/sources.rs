@@ -13,7 +13,8 @@ const LONG: usize = 400;
 const MACHINE_FOLDERS: [&str; 4] = ["work", "tmp", "root", "home"];
 
 /// Macros that write to the terminal.
-const PRINTS: [&str; 4] = ["println!", "eprintln!", "print!", "eprint!"];
+const PRINTS: [&str; 7] =
+    ["println!", "eprintln!", "print!", "eprint!", "console::print", "console::print_line", "console::note"];
 
 /// Sources that may print, beside `src/bin/`, and why.
 const MAY_PRINT: [(&str, &str); 5] = [

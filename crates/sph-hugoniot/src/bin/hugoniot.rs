@@ -24,7 +24,7 @@ fn main() -> ExitCode {
     match cli::execute(arguments) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            sph_io::console::note(format_args!("error: {error:#}"));
             ExitCode::from(cli::FILE_TROUBLE)
         }
     }

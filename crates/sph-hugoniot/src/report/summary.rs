@@ -17,9 +17,12 @@ pub fn line(outcome: &PointOutcome) -> String {
             let (u_s, error) = (outcome.shock_velocity, outcome.standard_error);
             let (cells, time) = (outcome.fed_cells, outcome.wall_seconds);
             let warnings: String = outcome.warnings.iter().map(|w| format!("\n  warning: {w}")).collect();
-            format!(
-                "u_p = {u_p} m/s: u_s = {u_s:.1} ± {error:.1} m/s, {status}, {cells:.1} cells fed in {time:.1} s{warnings}"
-            )
+            // A point that was stopped early has not told anything yet.
+            let found = match u_s.is_finite() {
+                true => format!("u_s = {u_s:.1} ± {error:.1} m/s"),
+                false => "no u_s yet".into(),
+            };
+            format!("u_p = {u_p} m/s: {found}, {status}, {cells:.1} cells fed in {time:.1} s{warnings}")
         }
     }
 }

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, anyhow};
+use sph_io::console;
 use sph_io::plot::{Axis, Figure, Series};
 use sph_io::table::{Column, Table, Values};
 
@@ -55,7 +56,7 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
         let size = case.medium.particle_size;
         let folder = folder_of(&options.folder, size);
         if !options.quiet && !options.json {
-            println!("D = {}: {}", show::<LengthKind>(size), folder.display());
+            console::print_line(format_args!("D = {}: {}", show::<LengthKind>(size), folder.display()))?;
         }
         let quiet = options.quiet || options.json;
         let single = RunOptions { folder: folder.clone(), quiet, json: false, ..options.clone() };
@@ -71,9 +72,9 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
     write(&options.folder, &cases[0].name, &rows)?;
     let table = table(&cases[0].name, &rows);
     if options.json {
-        println!("{:#}", table.to_json());
+        console::print_line(format_args!("{:#}", table.to_json()))?;
     } else if !options.quiet {
-        println!("{}", table.to_text());
+        console::print_line(table.to_text())?;
     }
     Ok(if some_failed { RunEnd::SomeFailed } else { RunEnd::Done })
 }

@@ -17,7 +17,7 @@ fn main() -> ExitCode {
     match execute(&Arguments::parse()) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error}");
+            sph_io::console::note(format_args!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
     }

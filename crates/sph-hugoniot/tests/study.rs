@@ -53,6 +53,18 @@ fn a_study_runs_each_particle_size_and_extrapolates() {
 }
 
 #[test]
+fn a_folder_that_holds_a_run_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("out")).unwrap();
+    std::fs::write(folder.path().join("out/case.json"), "{}").unwrap();
+    for more in [&[][..], &["--resume"], &["--replace"]] {
+        let (code, told) = study(folder.path(), &[&["--resolutions", "2um"], more].concat());
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains("there are results of a run with one particle size; hint: --out"), "{told}");
+    }
+}
+
+#[test]
 fn a_particle_size_that_does_not_fit_is_told_before_anything_runs() {
     let folder = tempfile::tempdir().unwrap();
     let (code, said) = study(folder.path(), &["--resolutions", "2um,3um"]);

@@ -126,6 +126,14 @@ impl Resolver<'_> {
                 );
                 None
             }
+            Field::Good(path, span) if path.contains('\0') => {
+                self.refuse(
+                    span.clone(),
+                    "no folder can have this name: it holds the character zero".into(),
+                    "such as \"results/porous-copper\"",
+                );
+                None
+            }
             Field::Good(path, _) => Some(path.clone()),
         };
         let bins_per_cell = self.count(&o.bins_per_cell, 10, 1, 1000);

@@ -47,6 +47,13 @@ pub fn run(cases: &[Case], case_text: &str, options: &RunOptions, interrupt: &At
         Ok(lock) => lock,
         Err(refused) => return Ok(refused),
     };
+    // The results of one run and those of a study of sizes, in one folder, would tell of two things.
+    if options.folder.join("case.json").exists() {
+        return Ok(RunEnd::Refused(format!(
+            "{}: there are results of a run with one particle size; hint: --out names another folder",
+            options.folder.display()
+        )));
+    }
     let mut some_failed = false;
     let mut tables = Vec::new();
     for case in cases {

@@ -47,12 +47,21 @@ fn whole(block: &str) -> String {
 
 #[test]
 fn every_piece_of_a_case_file_is_read() {
-    let mut count = 0;
+    let (mut count, folder) = (0, tempfile::tempdir().expect("a folder"));
     for (page, text) in pages() {
+        // Measured points that a page shows are those that its case names.
+        let measured = blocks(&text, "text").into_iter().find(|block| block.contains("u_p [m/s], u_s"));
+        let path = match measured {
+            Some(table) => {
+                std::fs::write(folder.path().join("measured.csv"), table).expect("a file");
+                folder.path().join("guide.ron").display().to_string()
+            }
+            None => page.clone(),
+        };
         // Whole files of other programs stand in brackets; a piece of a case file begins with the name of its field.
         for block in blocks(&text, "ron").into_iter().filter(|block| !block.starts_with('(')) {
             let case = whole(block);
-            if let Err(error) = config::parse(&case, &page) {
+            if let Err(error) = config::parse(&case, &path) {
                 panic!("{page}:\n{error}");
             }
             count += 1;

@@ -9,7 +9,6 @@ use sph_io::console;
 
 pub use crate::arguments::{Arguments, Command};
 use crate::config::units::{LengthKind, show};
-use crate::report::curves::load_data;
 use crate::run::{self, Earlier, RunEnd, RunOptions};
 use crate::{check, config, shell, status, study, template};
 
@@ -121,10 +120,6 @@ fn check_case(
     color: bool,
 ) -> anyhow::Result<u8> {
     let Some((_, case)) = load(path, color) else { return Ok(BAD_INPUT) };
-    if let Err(error) = load_data(&case) {
-        console::note(format_args!("error: {error}"));
-        return Ok(BAD_INPUT);
-    }
     let picture = picture.unwrap_or_else(|| Path::new(&case.output.directory).join("sample.png"));
     let mut check = check::Check::new(case, threads.map_or_else(available_threads, usize::from));
     check.draw(&picture);

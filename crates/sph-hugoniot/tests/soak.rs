@@ -1,5 +1,5 @@
-//! SIGKILL at random moments: a run that is killed again and again, with states and outcomes damaged in between and another number of
-//! threads each time, ends with the bytes of a run that was left alone.
+//! SIGKILL at random moments: a run that is killed again and again, with states and outcomes damaged in between and another
+//! number of threads each time, ends with the bytes of a run that was left alone.
 //!
 //! `cargo test` kills a few times; `cargo xtask soak` sets `SOAK_KILLS` and `SOAK_SEED`.
 

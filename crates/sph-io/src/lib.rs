@@ -1,4 +1,5 @@
-//! What leaves and enters the process: tables, plots, field images, ParaView snapshots, reports, checkpoints, progress, words to the user.
+//! What leaves and enters the process: tables, plots, field images, ParaView snapshots, reports, checkpoints, progress, words
+//! to the user.
 //!
 //! The crate knows no physics: slices, names and units go in, files come out. Every file is written atomically
 //! ([`atomic`]): whole or not at all. Every error ([`IoError`]) names its path. Folders are not created.

@@ -14,10 +14,10 @@ pub fn print(words: impl Display) -> Result<()> {
     write(&mut stdout().lock(), words)
 }
 
-/// Writes a line to standard output, as [`print`] does.
+/// Writes a line to standard output, as [`print()`] does.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn print_line(line: impl Display) -> Result<()> {
     print(format_args!("{line}\n"))
 }

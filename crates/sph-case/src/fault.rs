@@ -114,7 +114,9 @@ impl CaseError {
         };
         let span = self.clamp(&fault.span);
         let title = Level::ERROR.primary_title(title);
-        let mut group: Group<'_> = if self.line_is_long(span.start) {
+        let mut group: Group<'_> = if self.text.is_empty() {
+            title.element(Origin::path(self.path.as_str()))
+        } else if self.line_is_long(span.start) {
             let (line, column) = self.line_and_column(span.start);
             title.element(Origin::path(self.path.as_str()).line(line).char_column(column))
         } else {

@@ -60,7 +60,7 @@ pub enum Command {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
         threads: Option<u16>,
         /// PNG file for the picture of the sample; default: sample.png in the case's folder of results
-        #[arg(long, value_name = "FILE")]
+        #[arg(long, value_name = "FILE", value_parser = png_file)]
         picture: Option<PathBuf>,
     },
     /// Run the points of a case; results go into its folder
@@ -71,7 +71,7 @@ pub enum Command {
         /// Case file
         case: PathBuf,
         /// Particle velocities in m/s, in place of those of the case
-        #[arg(long, value_name = "U_P", value_delimiter = ',', value_parser = particle_velocity)]
+        #[arg(long, value_name = "U_P", value_delimiter = ',', value_parser = particle_velocity, allow_negative_numbers = true)]
         up: Vec<f64>,
         /// Particle sizes, in place of that of the case: the sweep with each, and u_s at vanishing size
         #[arg(long, value_name = "D", value_delimiter = ',', value_parser = particle_size)]
@@ -89,7 +89,7 @@ pub enum Command {
         #[arg(long)]
         replace: bool,
         /// Time between two states of a point on disk, in seconds
-        #[arg(long, value_name = "SECONDS", default_value_t = restart::INTERVAL.as_secs_f64(), value_parser = seconds)]
+        #[arg(long, value_name = "SECONDS", default_value_t = restart::INTERVAL.as_secs_f64(), value_parser = seconds, allow_negative_numbers = true)]
         keep_every: f64,
         /// No progress, no summary; failures are still told
         #[arg(long)]
@@ -145,7 +145,16 @@ fn particle_velocity(text: &str) -> Result<f64, String> {
     let (low, high) = PARTICLE_VELOCITIES;
     match (low..=high).contains(&value) {
         true => Ok(value),
-        false => Err(format!("{value} m/s is out of range; hint: from {low} to {high} m/s")),
+        false => Err(format!("out of range; hint: from {low} to {high} m/s")),
+    }
+}
+
+/// Reads the path of a picture: one that ends in `.png`, so that the name tells what is in it.
+fn png_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        true => Ok(path),
+        false => Err("pictures are PNG files; hint: a name such as sample.png".to_owned()),
     }
 }
 
@@ -158,9 +167,5 @@ fn particle_size(text: &str) -> Result<f64, String> {
 /// Reads a time in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("{text:?} is no number of seconds"))?;
-    if (0.0..=1e6).contains(&value) {
-        Ok(value)
-    } else {
-        Err(format!("{value} s is out of range; hint: 0 to 1e6"))
-    }
+    if (0.0..=1e6).contains(&value) { Ok(value) } else { Err("out of range; hint: 0 to 1e6 s".to_owned()) }
 }

@@ -325,7 +325,8 @@ impl Watcher<'_> {
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         let outcomes: Vec<PointOutcome> = state.outcomes.into_iter().flatten().collect();
         if let Some(progress) = state.progress {
-            progress.finish(&counted(outcomes.len(), "point"));
+            let ended = outcomes.iter().filter(|outcome| outcome.status != Status::Interrupted).count();
+            progress.finish(&format!("{ended} of {} ended", counted(self.costs.len(), "point")));
         }
         outcomes
     }

@@ -79,7 +79,24 @@ fn wrong_arguments_and_missing_files_exit_with_two() {
     hugoniot().arg("walk").assert().code(2);
     hugoniot().args(["init", "porous-coper"]).assert().code(2);
     let assert = hugoniot().args(["check", "no such file.ron"]).assert().code(2);
-    assert!(text(&assert.get_output().stderr).contains("no such file.ron"));
+    let message = text(&assert.get_output().stderr);
+    assert!(message.contains("no such file.ron"), "{message}");
+    assert!(!message.contains("1 |"), "a file without text has no line to show: {message}");
+}
+
+#[test]
+fn an_argument_out_of_range_is_told_with_its_range() {
+    for (arguments, hint) in [
+        (["run", "case.ron", "--up", "-5"], "out of range; hint: from 1 to 3000 m/s"),
+        (["run", "case.ron", "--up", "1e300"], "out of range; hint: from 1 to 3000 m/s"),
+        (["run", "case.ron", "--keep-every", "-5"], "out of range; hint: 0 to 1e6 s"),
+        (["check", "case.ron", "--picture", "sample.jpg"], "pictures are PNG files"),
+    ] {
+        let assert = hugoniot().args(arguments).assert().code(2);
+        let message = text(&assert.get_output().stderr);
+        assert!(message.contains(hint), "{arguments:?}: {message}");
+        assert!(message.lines().all(|line| line.len() < 120), "{arguments:?}: {message}");
+    }
 }
 
 #[test]

@@ -134,7 +134,7 @@ impl Progress {
             bar.println(format!("{}  {message}  ({took})", self.label));
             bar.finish_and_clear();
         } else {
-            self.write_line(&format!("done  {message}  ({took})"));
+            self.write_line(&format!("{message}  ({took})"));
         }
     }
 
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(lines.len(), 3, "{text}");
         assert_eq!(lines[0], "[00:00:00] u_p = 100 m/s    0 %  running");
         assert!(lines[1].ends_with("a warning"), "{text}");
-        assert!(lines[2].contains("done  u_s = 425 m/s  (0 s)"), "{text}");
+        assert!(lines[2].ends_with("u_p = 100 m/s  u_s = 425 m/s  (0 s)"), "{text}");
     }
 
     #[test]

@@ -30,7 +30,8 @@ pub fn write_atomic(path: impl AsRef<Path>, contents: &[u8]) -> Result<(), IoErr
 /// Writes to `path`, atomically, what `write` puts into the writer it is handed (buffered).
 ///
 /// # Errors
-/// [`IoError::File`], also for an error that `write` returns; the old file then still stands.
+/// [`IoError::File`], also for an error that `write` returns; the old file then still stands, but where the folder could
+/// not be flushed at the end: then the new one does, and a power cut may bring back the old.
 pub fn write_atomic_with(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -112,9 +113,17 @@ fn fill(file: &mut NamedTempFile, write: impl FnOnce(&mut dyn Write) -> io::Resu
     file.as_file().sync_all()
 }
 
-/// Makes a rename survive a power cut. Windows cannot open folders as files and needs no such step.
+/// Makes a rename survive a power cut. Windows cannot open folders as files and needs no such step; some file systems
+/// refuse it, and folders may be written to but not read: the new file stands all the same, so that is no failure.
 fn sync_folder(folder: &Path) -> io::Result<()> {
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+    use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(error) if matches!(error.kind(), InvalidInput | PermissionDenied | Unsupported) => Ok(()),
+        result => result,
+    }
 }
 
 #[cfg(test)]

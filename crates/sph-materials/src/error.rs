@@ -127,7 +127,7 @@ pub enum HugoniotError {
     },
     /// The material has no Hugoniot elastic limit.
     #[error(
-        "material `{material}` has no elastic limit: it needs a shear modulus and a finite yield strength"
+        "material `{material}` has no elastic limit: it needs a shear modulus and a finite yield strength that is not lost in its round-off"
     )]
     NoElasticLimit {
         /// Name of the material.
@@ -260,6 +260,18 @@ pub enum HugoniotError {
     NoSolidDensity {
         /// Pressure that was asked for [Pa].
         pressure: f64,
+    },
+    /// A compaction curve leaves the matter behind the wave no denser than ahead of it.
+    #[error(
+        "the compaction curve leaves {density} kg/m³ at {stress} Pa, no more than the {density_ahead} kg/m³ behind the precursor: its distension is too large for this medium"
+    )]
+    NotCompacted {
+        /// Stress behind the wave [Pa].
+        stress: f64,
+        /// Density that the curve gives there [kg/m³].
+        density: f64,
+        /// Density behind the precursor [kg/m³].
+        density_ahead: f64,
     },
     /// A compaction curve was asked outside the range of its data.
     #[error("stress {stress} Pa lies outside the curve's range, {least} to {greatest} Pa")]

@@ -61,9 +61,10 @@ pub struct JumpResiduals {
 }
 
 impl JumpResiduals {
-    /// Largest magnitude of the three.
+    /// Largest magnitude of the three; not a number where one of them is not.
     pub fn worst(&self) -> f64 {
-        [self.mass, self.momentum, self.energy].into_iter().map(f64::abs).fold(0.0, f64::max)
+        let larger = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        [self.mass, self.momentum, self.energy].into_iter().map(f64::abs).fold(0.0, larger)
     }
 }
 
@@ -89,6 +90,24 @@ impl Jump {
             mass: behind.density * (self.wave_speed - behind.particle_velocity) / mass_flux - 1.0,
             momentum: (sigma_b - sigma_a - mass_flux * du) / sigma_b,
             energy: (mass_flux * gain - sigma_b * du) / (sigma_b * du),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::JumpResiduals;
+
+    #[test]
+    fn the_worst_residual_hides_none_that_is_not_a_number() {
+        let residuals = JumpResiduals { mass: 1e-3, momentum: -2e-3, energy: 0.0 };
+        assert_eq!(residuals.worst(), 2e-3);
+        for unknown in [
+            JumpResiduals { mass: f64::NAN, ..residuals },
+            JumpResiduals { momentum: f64::NAN, ..residuals },
+            JumpResiduals { energy: f64::NAN, ..residuals },
+        ] {
+            assert!(unknown.worst().is_nan(), "{unknown:?}");
         }
     }
 }

@@ -158,3 +158,26 @@ fn an_impossible_state_behind_the_wave_is_named() {
         assert_eq!(error, HugoniotError::NoSolidDensity { pressure: stress });
     }
 }
+
+/// A curve that begins with more voids than the medium has would let the wave expand it: an error, no numbers.
+#[test]
+fn a_crush_curve_that_expands_the_medium_is_refused() {
+    let curve = CrushCurve::quadratic(0.15e9, 0.8e9, 2.0).unwrap();
+    let crushed = CompactionCurve::crush(medium(1.3514, 0.20e9), curve, 5e9).unwrap();
+    let error = crushed.wave_of_stress(0.21e9).unwrap_err();
+    assert!(matches!(error, HugoniotError::NotCompacted { .. }), "{error}");
+    assert!(error.to_string().contains("behind the precursor"), "{error}");
+    // Where the curve has fallen below the medium's distension there is a wave again, and a piston finds it.
+    let wave = crushed.wave(200.0).unwrap();
+    assert!(wave.residuals().worst() < 1e-9, "{:?}", wave.residuals());
+}
+
+/// Behind a precursor that leaves the medium as dense as its solid nothing is left to plow.
+#[test]
+fn the_snow_plow_needs_pores() {
+    let squeezed = Precursor::Moving { stress: 2.3e9, speed: 1080.0 };
+    let medium = PorousMedium::with_porosity(&copper(), 1.3514, squeezed).unwrap();
+    assert!(medium.state_ahead().density > copper().reference_density, "{:?}", medium.state_ahead());
+    let error = medium.snow_plow(600.0).unwrap_err();
+    assert!(matches!(error, HugoniotError::NotPorous { .. }), "{error}");
+}

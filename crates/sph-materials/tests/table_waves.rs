@@ -54,7 +54,8 @@ fn a_piston_must_push() {
 #[test]
 fn only_a_yielding_solid_has_an_elastic_limit() {
     let mut copper = library::material("porous-copper").unwrap();
-    for strength in [Strength::Fluid, Strength::Elastic { shear_modulus: 43e9 }] {
+    let lost_in_round_off = Strength::PerfectPlastic { shear_modulus: 43e9, yield_strength: 1e-9 };
+    for strength in [Strength::Fluid, Strength::Elastic { shear_modulus: 43e9 }, lost_in_round_off] {
         copper.strength = strength;
         let error = HugoniotError::NoElasticLimit { material: "porous-copper".into() };
         assert_eq!(elastic_limit(&copper), Err(error.clone()));

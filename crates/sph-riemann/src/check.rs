@@ -41,7 +41,24 @@ pub(crate) fn check_particles<D: SolidDimension>(
     particles: &Particles<D>,
     count: usize,
 ) -> Result<(), SetupError> {
+    check_columns(particles)?;
     (0..particles.len()).try_for_each(|i| check_particle(particles, i, count))
+}
+
+/// All columns must hold one value for each particle.
+fn check_columns<D: SolidDimension>(particles: &Particles<D>) -> Result<(), SetupError> {
+    let count = particles.len();
+    let others = [
+        ("material", particles.material.len()),
+        ("constraint", particles.constraint.len()),
+        ("failed", particles.failed.len()),
+    ];
+    let others = others.map(|(name, length)| (name.to_owned(), length));
+    let numbers = particles.columns().into_iter().map(|(name, column)| (name, column.len()));
+    match others.into_iter().chain(numbers).find(|(_, length)| *length != count) {
+        Some((name, length)) => Err(SetupError::Column { name, length, count }),
+        None => Ok(()),
+    }
 }
 
 fn check_particle<D: SolidDimension>(
@@ -67,6 +84,24 @@ fn check_particle<D: SolidDimension>(
     let energy = particles.specific_internal_energy[i];
     if !energy.is_finite() {
         return fault("specific internal energy", energy, "J/kg");
+    }
+    for (field, value, unit) in [
+        ("plastic strain", particles.plastic_strain[i], "1"),
+        ("relative speed", particles.relative_speed[i], "m/s"),
+        ("packing excess", particles.packing_excess[i], "1"),
+        ("packing reference", particles.packing_reference[i], "1"),
+    ] {
+        if !value.is_finite() {
+            return fault(field, value, unit);
+        }
+    }
+    let distension = particles.distension[i];
+    if !(distension >= 1.0 && distension.is_finite()) {
+        return fault("distension", distension, "1");
+    }
+    let deviator = (0..D::TENSOR_AXES.len()).map(|k| particles.deviator[k][i]);
+    if let Some(stress) = deviator.into_iter().find(|stress| !stress.is_finite()) {
+        return fault("deviator", stress, "Pa");
     }
     let coordinates: D::Axes<f64> =
         Components::from_fn(|a| particles.position[a][i] + particles.velocity[a][i]);

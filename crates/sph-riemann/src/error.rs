@@ -40,6 +40,16 @@ pub enum SetupError {
         /// Its unit.
         unit: &'static str,
     },
+    /// A column that does not hold one value for each particle.
+    #[error("column {name} has {length} values, but there are {count} particles")]
+    Column {
+        /// Name of the column.
+        name: String,
+        /// Its length.
+        length: usize,
+        /// Number of particles.
+        count: usize,
+    },
     /// A periodic axis without extent.
     #[error("the box is periodic along axis {axis}, but its period is {period} m")]
     Period {
@@ -47,6 +57,16 @@ pub enum SetupError {
         axis: usize,
         /// Period [m].
         period: f64,
+    },
+    /// A saved list position that is not finite.
+    #[error("the saved list position of particle {particle} is {value} m along axis {axis}")]
+    ListPosition {
+        /// Index of the particle.
+        particle: usize,
+        /// Axis: 0, 1, 2.
+        axis: usize,
+        /// The position [m].
+        value: f64,
     },
     /// Saved list positions that do not fit the particles.
     #[error("saved list positions have lengths {lengths:?}, but there are {count} particles")]

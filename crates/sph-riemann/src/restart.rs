@@ -53,7 +53,7 @@ impl<D: SolidDimension> Simulation<D> {
     /// they were saved, with every column.
     ///
     /// # Errors
-    /// As [`Simulation::new`]; list positions that do not fit the particles.
+    /// As [`Simulation::new`]; list positions that do not fit the particles, or are not finite.
     pub fn restore(
         domain: Domain<D>,
         materials: Vec<Material>,
@@ -69,6 +69,11 @@ impl<D: SolidDimension> Simulation<D> {
             let lengths: Vec<usize> = positions.iter().map(Vec::len).collect();
             if lengths != vec![count; D::COUNT] {
                 return Err(SetupError::ListPositions { lengths, count });
+            }
+            for (axis, positions) in positions.iter().enumerate() {
+                if let Some(particle) = positions.iter().position(|x| !x.is_finite()) {
+                    return Err(SetupError::ListPosition { particle, axis, value: positions[particle] });
+                }
             }
             let positions: D::AxisColumns = Components::from_fn(|a| positions[a].clone());
             simulation.find_neighbors(&positions);

@@ -73,3 +73,44 @@ fn sound_speed_is_that_of_the_step() {
     let step = simulation.step().expect("a sound step").time_step;
     assert!((step / (0.4 * least) - 1.0).abs() < 1e-12, "{step:e} s, {least:e} s");
 }
+
+/// Every column is looked at before the first step: its length, and its values.
+#[test]
+fn a_column_that_cannot_be_is_named() {
+    let copper = sph_materials::library::material("porous-copper").expect("a library material");
+    let begin = |change: &dyn Fn(&mut Particles<Dim2>)| {
+        let (domain, mut particles) = porous_block::<Dim2>(10, 0.0, 0.0);
+        change(&mut particles);
+        Simulation::new(domain, vec![copper.clone()], particles, Settings::default()).map(|_| ())
+    };
+    assert_eq!(begin(&|_| ()), Ok(()));
+    let short = |result: Result<(), SetupError>| match result {
+        Err(SetupError::Column { name, length, count }) => (name, count - length),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(short(begin(&|p| p.deviator[1].truncate(p.id.len() - 1))), ("deviator_yy".to_owned(), 1));
+    assert_eq!(short(begin(&|p| p.failed.truncate(p.id.len() - 1))), ("failed".to_owned(), 1));
+    for (field, change) in [
+        ("deviator", &(|p: &mut Particles<Dim2>| p.deviator[0][3] = f64::NAN) as &dyn Fn(&mut _)),
+        ("relative speed", &|p: &mut Particles<Dim2>| p.relative_speed[3] = f64::INFINITY),
+        ("distension", &|p: &mut Particles<Dim2>| p.distension[3] = 0.0),
+        ("plastic strain", &|p: &mut Particles<Dim2>| p.plastic_strain[3] = f64::NAN),
+    ] {
+        let Err(SetupError::Particle { field: told, .. }) = begin(change) else { panic!("{field}") };
+        assert_eq!(told, field);
+    }
+}
+
+/// Neighbor lists of a checkpoint are built from positions that are numbers, or not at all.
+#[test]
+fn list_positions_that_are_not_finite_are_refused() {
+    let copper = sph_materials::library::material("porous-copper").expect("a library material");
+    let (domain, particles) = porous_block::<Dim2>(10, 0.0, 0.0);
+    let saved = simulation::<Dim2>(10, 0.0, Settings::default()).clock();
+    let mut positions: Vec<Vec<f64>> = particles.position.to_vec();
+    positions[1][2] = f64::INFINITY;
+    let settings = Settings::default();
+    let restored =
+        Simulation::restore(domain, vec![copper], particles, settings, saved, Some(&positions)).map(|_| ());
+    assert_eq!(restored, Err(SetupError::ListPosition { particle: 2, axis: 1, value: f64::INFINITY }));
+}

@@ -39,6 +39,11 @@ impl<D: Dimension> CellGrid<D> {
                 let extent = (bounds[a][1] - bounds[a][0]).max(0.0);
                 count[a] = (extent / width).min(1e9) as usize + 1;
             }
+            // Without a width, or with an extent that is not finite, no wider cells would do: these.
+            let is_hopeless = !(width > 0.0 && width.is_finite());
+            if is_hopeless {
+                count = [1; 3];
+            }
             if count.iter().map(|&n| n as f64).product::<f64>() <= MAX_CELLS as f64 {
                 let lower = D::vector(|a| if bounds[a][0].is_finite() { bounds[a][0] } else { 0.0 });
                 return Self { lower, inverse_width: 1.0 / width, count };
@@ -400,6 +405,22 @@ mod tests {
                 let start: Vec<u32> = (0..=n_keys).map(first).collect();
                 assert_eq!(sort.start, start, "{count} indices, {threads} threads");
             }
+        }
+    }
+
+    /// No width divides an extent without end, and no number of cells of no width fills any: the search must end all the same.
+    #[test]
+    fn a_grid_of_no_width_or_without_bounds_has_one_cell() {
+        use crate::dimension::Dim2;
+        for (bounds, width) in [
+            ([[0.0, 1.0], [0.0, 1.0]], 0.0),
+            ([[0.0, 1.0], [0.0, 1.0]], f64::NAN),
+            ([[0.0, f64::INFINITY], [0.0, 1.0]], 0.1),
+            ([[f64::NEG_INFINITY, f64::INFINITY], [0.0, 1.0]], 0.1),
+        ] {
+            let grid = CellGrid::<Dim2>::between(bounds, width);
+            assert_eq!(grid.len(), 1, "{bounds:?} {width}");
+            assert_eq!(grid.coordinates(|_| 0.5), [0; 3], "{bounds:?} {width}");
         }
     }
 

@@ -63,7 +63,7 @@ impl<D: Dimension> NeighborLists<D> {
     ///
     /// # Panics
     /// If the pairs of a tile meet more than 65,000 particles of other tiles: sizes then differ by so much that a large particle
-    /// sees that many small ones.
+    /// sees that many small ones. If positions and sizes are not as many.
     pub fn build(position: &D::AxisColumns, size: &[f64], domain: &Domain<D>, reach: Reach) -> Self {
         let mut lists = Self::default();
         lists.rebuild(position, size, domain, reach);
@@ -90,22 +90,28 @@ impl<D: Dimension> NeighborLists<D> {
         domain: &Domain<D>,
         reach: Reach,
     ) {
-        self.n_particles = size.len();
+        let n_particles = size.len();
+        for a in 0..D::COUNT {
+            assert_eq!(position[a].len(), n_particles, "positions along axis {a} and sizes must be as many");
+        }
+        // Pair loops trust the lists: should a panic stop the build, there are none.
+        self.n_particles = 0;
+        let mut tiles = std::mem::take(&mut self.tiles);
         let largest = size.iter().fold(0.0_f64, |a, &b| a.max(b));
         let farthest = 2.0 * reach.factor * largest + reach.skin;
         self.halo = Halo::<D>::build(position, domain, farthest);
         let search = Search::new(&mut self.workspace, position, &self.halo, size, reach, farthest);
         let n_tiles = size.len().div_ceil(TILE);
-        self.tiles.resize_with(n_tiles, TileLists::default);
-        let tiles = self.tiles.par_iter_mut().enumerate();
-        tiles.for_each_init(
+        tiles.resize_with(n_tiles, TileLists::default);
+        tiles.par_iter_mut().enumerate().for_each_init(
             || Draft::new(n_tiles),
             |draft, (t, lists)| search.tile(instructions, t, draft, lists),
         );
-        tile_lists::connect(&mut self.tiles);
+        tile_lists::connect(&mut tiles);
         self.reference.resize_with(D::COUNT, Vec::new);
         (0..D::COUNT).for_each(|a| self.reference[a].clone_from(&position[a]));
         self.motion.restart(position, domain, (farthest, reach.skin), &mut self.workspace.records);
+        (self.tiles, self.n_particles) = (tiles, n_particles);
     }
 
     /// Number of particles.

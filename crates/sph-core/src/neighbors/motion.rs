@@ -62,7 +62,8 @@ impl<D: Dimension> Motion<D> {
         let mut count = cells(&bounds, width);
         while count.iter().map(|&n| n as f64).product::<f64>() > (CELLS_A_PARTICLE * n + 64) as f64 {
             width *= 1.5;
-            count = cells(&bounds, width);
+            // An extent that is not finite is not divided by any width.
+            count = if width.is_finite() { cells(&bounds, width) } else { [1; 3] };
         }
         // Periodic axes are divided evenly, so that their cells may be wider yet.
         let inverse: [f64; 3] = std::array::from_fn(|a| {
@@ -218,4 +219,22 @@ fn share(length: f64, allowed: f64) -> f64 {
 fn length_squared<D: Dimension>(range: &Range<D>) -> f64 {
     let extent = D::vector(|a| (-range.1[a] - range.0[a]).max(0.0));
     extent.dot(extent)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::dimension::Dim2;
+
+    /// A particle that has flown off without end must not keep the search for wider cells going.
+    #[test]
+    fn a_particle_without_a_place_ends_the_search_for_wider_cells() {
+        let domain = Domain::<Dim2>::new(DVec2::ZERO, DVec2::ONE, [false; 2]);
+        let position = [vec![0.1, f64::INFINITY, 0.3], vec![0.1, 0.2, 0.3]];
+        let mut motion = Motion::<Dim2>::default();
+        motion.restart(&position, &domain, (0.1, 0.01), &mut Vec::new());
+        assert_eq!(motion.count, [1; 3]);
+    }
 }

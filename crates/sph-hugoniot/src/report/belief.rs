@@ -62,6 +62,11 @@ fn judged(value: f64, (good, fair): Bounds) -> Verdict {
     }
 }
 
+/// The largest of some magnitudes; not a number where one of them is not, so that none passes for good unseen.
+fn largest(values: [f64; 3]) -> f64 {
+    values.into_iter().fold(0.0, |a, b| if a.is_nan() || a > b { a } else { b })
+}
+
 fn percent(value: f64) -> String {
     if value.is_nan() { "not measured".into() } else { format!("{:.2} %", 100.0 * value) }
 }
@@ -136,7 +141,7 @@ fn mass_balance(outcome: &PointOutcome) -> Answer {
 
 fn jump_conditions(outcome: &PointOutcome) -> Answer {
     let residuals = outcome.residuals.map(|r| [r.mass, r.momentum, r.energy]);
-    let worst = residuals.map_or(f64::NAN, |r| r.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+    let worst = residuals.map_or(f64::NAN, |r| largest(r.map(f64::abs)));
     let value = residuals.map_or("not measured".to_owned(), |r| {
         let [mass, momentum, energy] = r.map(|x| 100.0 * x);
         format!("mass {mass:.2} %, momentum {momentum:.2} %, energy {energy:.2} %")
@@ -152,9 +157,9 @@ fn jump_conditions(outcome: &PointOutcome) -> Answer {
 }
 
 fn books(outcome: &PointOutcome) -> Answer {
-    let gap = outcome
-        .worst()
-        .map_or(outcome.ledger_residual, |w| w.momentum_gap.max(w.energy_gap).max(outcome.ledger_residual));
+    let gap = outcome.worst().map_or(outcome.ledger_residual, |w| {
+        largest([w.momentum_gap, w.energy_gap, outcome.ledger_residual])
+    });
     answer(
         judged(gap, BOOKS),
         gap,
@@ -274,6 +279,12 @@ mod tests {
         assert_eq!(judged(0.02, MASS_BALANCE), Verdict::Caution);
         assert_eq!(judged(0.2, MASS_BALANCE), Verdict::Bad);
         assert_eq!(judged(f64::NAN, MASS_BALANCE), Verdict::Unknown);
+        assert_eq!(largest([0.1, 0.3, 0.2]), 0.3);
+        for k in 0..3 {
+            let mut values = [0.1, 0.3, 0.2];
+            values[k] = f64::NAN;
+            assert!(largest(values).is_nan(), "{values:?}");
+        }
     }
 
     #[test]

@@ -104,6 +104,10 @@ pub fn elastic_limit(material: &Material) -> Result<Jump, HugoniotError> {
         return Err(HugoniotError::NoElasticLimit { material: material.name.clone() });
     };
     let density = material.reference_density * (yield_strength / (2.0 * shear_modulus)).exp();
+    if density <= material.reference_density {
+        // So weak that its limit is lost in round-off: there is no jump to speak of.
+        return Err(HugoniotError::NoElasticLimit { material: material.name.clone() });
+    }
     let ahead = ShockState::at_rest(material.reference_density);
     let shear_stress = |_: f64| yielded_shear_stress(material);
     Adiabat { material, ahead, shear_stress }

@@ -139,7 +139,8 @@ impl CompactionCurve {
     /// # Errors
     ///
     /// [`HugoniotError::OutsideCurve`] outside the data; [`HugoniotError::PrecursorOvertaken`];
-    /// [`HugoniotError::NoSolidDensity`] where the solid does not come to that stress.
+    /// [`HugoniotError::NoSolidDensity`] where the solid does not come to that stress;
+    /// [`HugoniotError::NotCompacted`] where the curve leaves more volume than there is behind the precursor.
     pub fn wave_of_stress(&self, stress: f64) -> Result<Jump, HugoniotError> {
         let ahead = self.precursor;
         if !(stress > ahead.pressure && stress <= self.greatest_stress) {
@@ -158,10 +159,14 @@ impl CompactionCurve {
             ahead.specific_internal_energy + 0.5 * (stress + ahead.pressure) * volume_loss(rho_s)
         };
         let rho_s = self.medium.solid_density(stress, energy)?;
-        let mass_flux = ((stress - ahead.pressure) / volume_loss(rho_s)).sqrt();
+        let (density, loss) = (rho_s / alpha, volume_loss(rho_s));
+        if loss <= 0.0 {
+            return Err(HugoniotError::NotCompacted { stress, density, density_ahead: ahead.density });
+        }
+        let mass_flux = ((stress - ahead.pressure) / loss).sqrt();
         let behind = ShockState {
-            density: rho_s / alpha,
-            particle_velocity: ahead.particle_velocity + mass_flux * volume_loss(rho_s),
+            density,
+            particle_velocity: ahead.particle_velocity + mass_flux * loss,
             longitudinal_stress: -stress,
             pressure: stress,
             specific_internal_energy: energy(rho_s),

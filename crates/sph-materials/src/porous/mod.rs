@@ -249,10 +249,15 @@ impl PorousMedium {
     ///
     /// # Errors
     ///
-    /// As [`PorousMedium::shut_pores`], without those of the equation of state.
+    /// As [`PorousMedium::shut_pores`], without those of the equation of state; [`HugoniotError::NotPorous`] behind a
+    /// precursor that leaves the medium as dense as its solid.
     pub fn snow_plow(&self, piston_velocity: f64) -> Result<Jump, HugoniotError> {
         let ahead = self.state_ahead_of(piston_velocity)?;
         let density = self.solid.reference_density;
+        if density <= ahead.density {
+            // A precursor that shuts the pores leaves an incompressible solid nothing to plow.
+            return Err(HugoniotError::NotPorous { initial_density: ahead.density, solid_density: density });
+        }
         let du = piston_velocity - ahead.particle_velocity;
         let shock_velocity = du / (1.0 - ahead.density / density);
         let sigma = -ahead.longitudinal_stress + ahead.density * shock_velocity * du;

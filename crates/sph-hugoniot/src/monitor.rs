@@ -4,7 +4,7 @@
 //! energies, the packing against the particles' own density, the virtual work of volume consistency, what limited the
 //! time step, the share of failed particles, and how often a bound acted. A row costs one pass over the particles.
 //!
-//! `W = ∫ |P dV|` of the density that volume consistency changed is compared with the energy that the
+//! `W = ∫ P |dV|` of the density that volume consistency changed is compared with the energy that the
 //! shock puts in, `½ u_p²` of each unit of mass that was swept.
 
 use serde::{Deserialize, Serialize};

@@ -25,7 +25,7 @@ pub struct Clock {
     pub step_count: u64,
     /// Sum over the steps of the number of particles.
     pub particle_steps: u64,
-    /// ∫ |P dV| of the density that volume consistency changed [J], per meter of depth in the plane.
+    /// ∫ P |dV| of the density that volume consistency changed [J], per meter of depth in the plane.
     pub relaxation_work: f64,
     /// How often a bound acted.
     pub interventions: Interventions,

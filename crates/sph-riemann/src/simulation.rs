@@ -258,7 +258,7 @@ impl<D: SolidDimension> Simulation<D> {
         &self.stage_times
     }
 
-    /// ∫ |P dV| of the density that volume consistency changed [J], per meter of depth in the plane.
+    /// ∫ P |dV| of the density that volume consistency changed [J], per meter of depth in the plane.
     pub fn relaxation_work(&self) -> f64 {
         self.relaxation_work
     }

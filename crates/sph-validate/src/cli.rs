@@ -134,6 +134,12 @@ fn validate(arguments: &Arguments, suites: &[&dyn Suite]) -> Result<u8, Validate
     let store = Store::open(&arguments.out, arguments.earlier())?;
     let schemes = if arguments.scheme.is_empty() { &SchemeName::ALL[..] } else { &arguments.scheme };
     let jobs = plan(suites, schemes, arguments.tier);
+    if jobs.is_empty() {
+        console::note(
+            "nothing to run: the suites that were asked for have no runs with these schemes in this tier",
+        );
+        return Ok(BAD_INPUT);
+    }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.map_or(cores, usize::from);
     let what = match &arguments.case {

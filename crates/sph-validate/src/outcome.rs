@@ -89,7 +89,7 @@ pub struct Cost {
     pub steps: u64,
     /// Sum of the particles over the steps.
     pub particle_steps: u64,
-    /// Wall time [s] on one core.
+    /// Wall time [s].
     pub seconds: f64,
 }
 

@@ -239,7 +239,7 @@ fn shown(row: &Row) -> String {
 fn costs(report: &Report) -> Section {
     let runs: Vec<_> = report.runs.iter().filter_map(|run| Some((&run.case, run.cost?))).collect();
     let text = |name: &str, cells: Vec<String>| Column::text(name, "", cells);
-    let table = Table::new("Runs, one core each")
+    let table = Table::new("Runs")
         .with(text("problem", runs.iter().map(|(case, _)| case.suite.clone()).collect()))
         .with(text("variant", runs.iter().map(|(case, _)| case.variant.clone()).collect()))
         .with(text(

@@ -119,7 +119,7 @@ fn push_failures(text: &mut String, report: &Report) {
 }
 
 fn push_costs(text: &mut String, report: &Report) {
-    text.push_str("## Cost\n\nOne core a run; runs side by side share the machine.\n\n");
+    text.push_str("## Cost\n\nSeconds by the clock; runs side by side share the machine, and a costly run may have several threads.\n\n");
     text.push_str(
         "| suite | variant | scheme | n | particles | steps | wall time, s | million particle-steps/s |\n",
     );

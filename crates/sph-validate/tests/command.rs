@@ -61,6 +61,16 @@ fn finished_runs_are_taken_over_and_never_lost_by_accident() {
     assert!(error_text(&run(&["--replace"])).contains("n = 400:"));
 }
 
+/// What was asked for has no runs: that is told, and does not pass.
+#[test]
+fn nothing_to_run_does_not_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = validate(&["--suite", "collapse", "--scheme", "csph"], folder.path());
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("nothing to run"), "{told}");
+}
+
 #[test]
 fn one_suite_with_one_scheme_writes_table_json_summary_and_plots() {
     let folder = tempfile::tempdir().expect("a folder");

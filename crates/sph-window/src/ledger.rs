@@ -154,20 +154,25 @@ impl Ledger {
     }
 
     /// Largest residual as a part of all that was ever booked of the same content [-]: round-off when the ledger closes.
+    /// Not a number where one of them is not.
     pub fn relative_residual(&self, now: &Content) -> f64 {
-        let [mass, momentum, energy] = self.relative_residuals(now);
-        mass.max(momentum).max(energy)
+        self.relative_residuals(now).into_iter().fold(0.0, larger)
     }
 
     /// Residuals of mass, momentum and energy, each as a part of all that was ever booked of it [-].
     pub fn relative_residuals(&self, now: &Content) -> [f64; 3] {
         let (residual, scale) = (self.residual(now), self.throughput);
-        let momentum = residual.momentum.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
+        let momentum = residual.momentum.iter().fold(0.0, |m: f64, p| larger(m, p.abs()));
         let momentum_scale = scale.momentum.iter().fold(0.0, |m: f64, &p| m.max(p));
         // A content that was never there (momentum of a medium at rest) has no scale, and no residual either.
         let part = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value.abs() / scale };
         [part(residual.mass, scale.mass), part(momentum, momentum_scale), part(residual.energy, scale.energy)]
     }
+}
+
+/// The larger of two magnitudes; not a number where one is not (`f64::max` would hide it).
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }
 
 #[cfg(test)]
@@ -216,5 +221,17 @@ mod tests {
         let particles = lattice::<Dim2>(1e-6, [2, 2, 1]).particles().clone();
         let now = Content::of_particles(&particles);
         assert_eq!(Ledger::new(now).relative_residual(&now), 0.0);
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_no_closed_book() {
+        let mut particles = lattice::<Dim2>(1e-6, [2, 2, 1]).particles().clone();
+        particles.velocity[0][0] = 100.0;
+        let ledger = Ledger::new(Content::of_particles(&particles));
+        particles.velocity[1][0] = f64::NAN;
+        assert!(ledger.relative_residual(&Content::of_particles(&particles)).is_nan());
+        particles.velocity[1][0] = 0.0;
+        particles.specific_internal_energy[0] = f64::NAN;
+        assert!(ledger.relative_residual(&Content::of_particles(&particles)).is_nan());
     }
 }

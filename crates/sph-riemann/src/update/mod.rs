@@ -56,7 +56,7 @@ pub struct TileReport {
     pub input: ConstraintInput,
     /// First particle with a state that cannot be.
     pub broken: Option<u32>,
-    /// Work of the volume consistency: ∫ P dV of the density it changes [J], per meter of depth in the plane.
+    /// Work of the volume consistency: ∫ P |dV| of the density it changes [J], per meter of depth in the plane.
     pub relaxation_work: f64,
     /// Bounds that acted.
     pub interventions: Interventions,

@@ -302,8 +302,13 @@ impl<'de> de::VariantAccess<'de> for Choice<'_> {
         }
     }
 
-    fn tuple_variant<V: Visitor<'de>>(self, _len: usize, visitor: V) -> Result<V::Value, TreeError> {
+    fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, TreeError> {
         match &self.tree.node.value {
+            // A visitor takes what it needs and leaves the rest unread: what is too much must be told here.
+            Value::Tuple(_, items) if items.len() > len => Err(TreeError::at(
+                &items[len].span,
+                format!("`{}` takes {len} values, not {}", self.name, items.len()),
+            )),
             Value::Tuple(_, items) => {
                 visitor.visit_seq(Items { items: items.iter(), faults: self.tree.faults })
             }
@@ -337,6 +342,7 @@ mod tests {
     enum Shape {
         None,
         Round(Round),
+        Oval(f64, f64),
     }
 
     #[derive(Debug, Default, Deserialize, PartialEq)]
@@ -379,6 +385,9 @@ mod tests {
         assert!(faults_of("(count: 1, count: 2)")[0].0.contains("given twice"));
         assert!(faults_of("(choice: None(3))")[0].0.contains("takes nothing in brackets"));
         assert!(faults_of("(choice: Round(radius: 1, diameter: 2))")[0].0.contains("no field `diameter`"));
+        assert!(faults_of("(choice: Oval(1, 2))").is_empty());
+        assert!(faults_of("(choice: Oval(1, 2, 3))")[0].0.contains("`Oval` takes 2 values, not 3"));
+        assert!(!faults_of("(choice: Oval(1))").is_empty());
         assert!(faults_of("5")[0].0.contains("a group of fields"));
     }
 }

@@ -102,7 +102,9 @@ impl Arguments {
     /// The command that goes on where this one was interrupted.
     fn go_on(&self) -> String {
         let folder = machine::quoted(self.out.display().to_string());
-        format!("{} --out {folder} --resume", self.command())
+        let strict = if self.strict { " --strict" } else { "" };
+        let threads = self.threads.map_or(String::new(), |n| format!(" --threads {n}"));
+        format!("{}{strict}{threads} --out {folder} --resume", self.command())
     }
 }
 
@@ -258,10 +260,14 @@ mod tests {
     #[test]
     fn command_that_goes_on_is_what_a_shell_takes_for_the_same() {
         let typed = ["sph-validate", "--suite", "riemann", "--out", "my results/it's"];
-        let arguments = Arguments::try_parse_from(typed).expect("a command");
+        let arguments = |more: &[&str]| {
+            Arguments::try_parse_from(typed.iter().chain(more).copied()).expect("a command").go_on()
+        };
         let expected =
             r"cargo xtask validate --tier quick --suite riemann --out 'my results/it'\''s' --resume";
-        assert_eq!(arguments.go_on(), expected);
+        assert_eq!(arguments(&[]), expected);
+        let expected = r"cargo xtask validate --tier quick --suite riemann --strict --threads 1 --out 'my results/it'\''s' --resume";
+        assert_eq!(arguments(&["--strict", "--threads", "1"]), expected);
     }
 
     /// Whether something was stopped is for the runs to say: the signal may come when all have ended.

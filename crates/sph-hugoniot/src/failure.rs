@@ -30,7 +30,7 @@ pub fn explain(window: &Window<Dim2>, error: &WindowError, case: &Case, folder: 
             words += &write(window, place, case, folder);
         }
     }
-    for hint in hints(step, case) {
+    for hint in hints(step, window, case) {
         words += &format!("; {hint}");
     }
     words
@@ -85,14 +85,18 @@ fn write(window: &Window<Dim2>, place: [f64; 2], case: &Case, folder: &Path) -> 
 }
 
 /// What to change, by what broke.
-fn hints(error: &StepError, case: &Case) -> Vec<String> {
+fn hints(error: &StepError, window: &Window<Dim2>, case: &Case) -> Vec<String> {
     let mut hints = Vec::new();
     let courant = case.scheme.courant;
     if courant > 0.5 {
         hints.push(format!("cfl is {courant}: the shipped cases use 0.4"));
     }
-    if let StepError::Broken { density, .. } = error {
-        let part = density / case.material.reference_density;
+    if let StepError::Broken { particle, density, .. } = error {
+        let particles = window.simulation().particles();
+        let material = particles.id.iter().position(|id| id == particle).map(|i| particles.material[i]);
+        let materials = window.simulation().materials();
+        let solid = material.and_then(|m| materials.get(usize::from(m))).unwrap_or(&case.material);
+        let part = density / solid.reference_density;
         if part < 0.8 {
             let percent = 100.0 * part;
             hints.push(format!(

@@ -93,14 +93,15 @@ pub fn run(case: &Case, case_text: &str, options: &RunOptions, interrupt: &Atomi
         Ok(lock) => lock,
         Err(refused) => return Ok(refused),
     };
-    if let Some(refusal) = earlier::settle(&options.folder, case, options.earlier)? {
-        return Ok(RunEnd::Refused(refusal));
-    }
-    earlier::clear_leftovers(&options.folder)?;
+    // Before earlier results are thrown away all that may refuse the run has had its say.
     let data = match load_data(case) {
         Ok(data) => data,
         Err(error) => return Ok(RunEnd::Refused(error.to_string())),
     };
+    if let Some(refusal) = earlier::settle(&options.folder, case, options.earlier)? {
+        return Ok(RunEnd::Refused(refusal));
+    }
+    earlier::clear_leftovers(&options.folder)?;
     let report = Report::create(&options.folder, case, case_text)?;
     let board = StatusBoard::new(&options.folder, &case.name, &options.go_on);
     let to_its_end = || -> Result<(RunEnd, String)> {

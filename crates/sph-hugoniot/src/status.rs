@@ -14,7 +14,7 @@ use sph_io::lock::FolderLock;
 use sph_io::table::{Column, Table};
 
 use crate::check::duration;
-use crate::outcome::PointOutcome;
+use crate::outcome::{PointOutcome, Status};
 
 /// Name of the file.
 pub const FILE: &str = "status.json";
@@ -160,7 +160,7 @@ impl StatusBoard {
         let mut board = self.state();
         let point = board.point(outcome.particle_velocity);
         let swept = outcome.cell_velocities.last().map_or(0.0, |c| c.1 / cell);
-        point.phase = Phase::Ended;
+        point.phase = if outcome.status == Status::Interrupted { Phase::Running } else { Phase::Ended };
         point.swept_cells = point.swept_cells.max(swept);
         point.expected_cells = None;
         point.seconds_left = None;
@@ -393,6 +393,13 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("stopped"), "{text}");
+
+        // A point that was stopped has a result so far, and is not at its end.
+        let stopped =
+            PointOutcome { status: Status::Interrupted, ..PointOutcome::failed(200.0, String::new()) };
+        board.ended(&stopped, 1e-5);
+        let text = read(folder.path()).unwrap().unwrap().to_text();
+        assert!(text.contains("1 of 2 points ended") && text.contains("interrupted"), "{text}");
 
         board.break_off();
         let text = read(folder.path()).unwrap().unwrap().to_text();

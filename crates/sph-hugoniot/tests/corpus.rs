@@ -59,3 +59,27 @@ fn bad_cases_are_refused_with_every_announced_fault_and_no_other() {
         assert!(found.is_empty(), "{name}: faults that are not announced: {found:#?}");
     }
 }
+
+/// A list that is too long is refused; none of it is left out in silence.
+#[test]
+fn lists_that_are_too_long_are_refused() {
+    let medium = |list: &str| {
+        format!(
+            "Case(name: \"long\", material: Library(name: \"porous-copper\"), \
+             medium: (cell: \"20 um\", {list}, particle_size: \"1 um\"), points: [\"100 m/s\"])"
+        )
+    };
+    let layers = "(thickness: \"0.01 um\", of: Void), ".repeat(2001);
+    let sets = "(of: Void), ".repeat(2001);
+    for (list, told) in [
+        (format!("layers: [{layers}]"), "2001 layers are listed"),
+        (format!("inclusions: [{sets}]"), "2001 sets of inclusions are listed"),
+    ] {
+        let error = config::parse(&medium(&list), "long.ron").expect_err(told);
+        assert!(
+            error.faults.iter().any(|fault| fault.message == told),
+            "{told}: {}",
+            error.faults[0].message
+        );
+    }
+}

@@ -63,8 +63,12 @@ impl Draft<'_> {
     /// Layers one after another from x = 0; they must fill the cell.
     pub(super) fn paint_layers(&self, r: &Resolver<'_>, layout: &mut Layout) {
         let Field::Good(list, span) = &self.m.layers else { return };
+        if list.len() > MOST {
+            r.refuse(span.clone(), format!("{} layers are listed", list.len()), &format!("at most {MOST}"));
+            return;
+        }
         let mut from = 0.0;
-        for field in list.iter().take(MOST) {
+        for field in list {
             let Some(layer) = field.get() else { return };
             let thickness = r.needed(&layer.thickness, "thickness", &span_of(field), self.size, self.cell.x);
             layer.of.required("of", &span_of(field), r.faults);
@@ -83,8 +87,13 @@ impl Draft<'_> {
     /// Inclusions of all sets; returns them.
     pub(super) fn paint_inclusions(&self, r: &Resolver<'_>, layout: &mut Layout) -> Vec<Shape> {
         let mut standing: Vec<Shape> = Vec::new();
-        let Field::Good(list, _) = &self.m.inclusions else { return standing };
-        for field in list.iter().take(MOST) {
+        let Field::Good(list, span) = &self.m.inclusions else { return standing };
+        if list.len() > MOST {
+            let message = format!("{} sets of inclusions are listed", list.len());
+            r.refuse(span.clone(), message, &format!("at most {MOST}"));
+            return standing;
+        }
+        for field in list {
             let Some(set) = field.get() else { continue };
             let group = span_of(field);
             set.of.required("of", &group, r.faults);

@@ -326,6 +326,14 @@ impl Draft<'_> {
             );
             return None;
         }
+        if by_porosity && share > 0.0 && share <= there {
+            let (there, share) = (100.0 * there, 100.0 * share);
+            let message = format!(
+                "the other voids take {there:.1} % of the cell already, the porosity asks for {share:.1} % in all"
+            );
+            r.refuse(span, message, "fewer or smaller voids, a higher porosity, or no `pores`");
+            return None;
+        }
         let shapes = self.place_at_random(r, random, by_porosity.then_some(wanted), standing, &span)?;
         shapes.into_iter().for_each(|shape| layout.paint(shape, Fill::Void));
         let exact = by_porosity && !has_voids;

@@ -121,7 +121,7 @@ fn scatter(outcome: &PointOutcome) -> Answer {
         "Scatter of u_s",
         percent(share),
         format!(
-            "Standard error over u_s, from {} cells. Slow settling is not in it: look at the history.",
+            "Standard error over u_s, from {} cells, with what of a slow settling the blocks show: look at the history.",
             outcome.averaged_cells
         ),
     )

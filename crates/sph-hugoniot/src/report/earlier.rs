@@ -43,7 +43,12 @@ fn other_version(folder: &Path, before: &Value) -> Option<String> {
     ))
 }
 
-/// Parts of a case that may differ when a run goes on: which points, and what is drawn of them.
+/// What a run leaves in its folder besides what the next one writes anew before its first step.
+const FOLDERS: [&str; 3] = ["points", "curve", "plots"];
+const FILES: [&str; 3] = ["hugoniot.csv", "hugoniot.json", "report.html"];
+
+/// Parts of a case that may differ when a run goes on: which points, and what is drawn of them. But for the
+/// [grids](same_grids) that kept sums stand on.
 const FREE: [&str; 7] = ["points", "refinement", "data", "output", "name", "format", "program"];
 
 /// Makes the folder ready; the reason if the run must not start.
@@ -62,11 +67,7 @@ pub fn settle(folder: &Path, case: &Case, earlier: Earlier) -> Result<Option<Str
             folder.display()
         ))),
         Earlier::Replace => {
-            let points = folder.join("points");
-            if points.exists() {
-                std::fs::remove_dir_all(&points)
-                    .with_context(|| format!("{}: cannot be removed", points.display()))?;
-            }
+            clear(folder)?;
             Ok(None)
         }
         Earlier::Resume => {
@@ -89,6 +90,20 @@ pub fn settle(folder: &Path, case: &Case, earlier: Earlier) -> Result<Option<Str
     }
 }
 
+/// Removes the results of an earlier run, and nothing else.
+fn clear(folder: &Path) -> Result<()> {
+    let folders = FOLDERS.map(|name| folder.join(name)).into_iter().filter(|path| path.exists());
+    let files = FILES.map(|name| folder.join(name)).into_iter().filter(|path| path.exists());
+    let cannot = |path: &Path| format!("{}: cannot be removed", path.display());
+    for path in folders {
+        std::fs::remove_dir_all(&path).with_context(|| cannot(&path))?;
+    }
+    for path in files {
+        std::fs::remove_file(&path).with_context(|| cannot(&path))?;
+    }
+    Ok(())
+}
+
 /// Removes what a killed process was just writing into the folder, or into any folder below; other files of the user's stay.
 /// The folder must be held.
 ///
@@ -105,7 +120,18 @@ pub fn clear_leftovers(folder: &Path) -> Result<()> {
 fn changes(before: &Value, now: &Value) -> Vec<String> {
     let mut lines = Vec::new();
     compare("", before, now, &mut lines);
+    same_grids(before, now, &mut lines);
     lines
+}
+
+/// What a point keeps is summed in bins of the profile, and numbered by the moments of a series: these grids stay.
+fn same_grids(before: &Value, now: &Value, lines: &mut Vec<String>) {
+    for place in ["/output/bins_per_cell", "/output/snapshots/every_cells"] {
+        // A series may begin or end when a run goes on.
+        if let (Some(a), Some(b)) = (before.pointer(place), now.pointer(place)) {
+            compare(&place[1..].replace('/', "."), a, b, lines);
+        }
+    }
 }
 
 fn compare(place: &str, before: &Value, now: &Value, lines: &mut Vec<String>) {
@@ -137,6 +163,36 @@ mod tests {
         let now = json!({"points": [50.0, 75.0], "medium": {"porosity": 1.4, "cell": 2e-5}});
         assert_eq!(changes(&before, &now), ["  medium.porosity: 1.35 -> 1.4"]);
         assert!(changes(&before, &before).is_empty());
+    }
+
+    #[test]
+    fn grids_that_kept_sums_stand_on_may_not_differ() {
+        let output = |bins: u64, snapshots: Value| json!({"output": {"bins_per_cell": bins, "images": bins == 10, "snapshots": snapshots}});
+        let (none, tenth) = (Value::Null, json!({"every_cells": 0.1}));
+        let change = |before: &Value, now: &Value| changes(before, now);
+        assert!(change(&output(10, none.clone()), &output(10, tenth.clone())).is_empty());
+        let found = change(&output(10, none.clone()), &output(20, none));
+        assert_eq!(found, ["  output.bins_per_cell: 10 -> 20"]);
+        let found = change(&output(10, tenth), &output(10, json!({"every_cells": 0.5})));
+        assert_eq!(found, ["  output.snapshots.every_cells: 0.1 -> 0.5"]);
+    }
+
+    #[test]
+    fn replacing_clears_all_results_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in FOLDERS {
+            std::fs::create_dir(folder.path().join(name)).unwrap();
+            std::fs::write(folder.path().join(name).join("old.csv"), b"x").unwrap();
+        }
+        for name in FILES.into_iter().chain(["case.json", "notes.txt"]) {
+            std::fs::write(folder.path().join(name), b"x").unwrap();
+        }
+        clear(folder.path()).unwrap();
+        let left =
+            |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+        let mut left: Vec<String> = std::fs::read_dir(folder.path()).unwrap().map(left).collect();
+        left.sort();
+        assert_eq!(left, ["case.json", "notes.txt"]);
     }
 
     #[test]

@@ -171,7 +171,7 @@ impl Ledger {
 }
 
 /// The larger of two magnitudes; not a number where one is not (`f64::max` would hide it).
-fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 

@@ -6,6 +6,7 @@
 //! volume consistency, and the coldest particle. A verdict is a hint where to look, not a proof.
 
 use sph_io::html::{Check, Verdict};
+use sph_window::ledger::larger;
 
 use crate::config::Case;
 use crate::microstructure::measure;
@@ -60,11 +61,6 @@ fn judged(value: f64, (good, fair): Bounds) -> Verdict {
         v if v <= fair => Verdict::Caution,
         _ => Verdict::Bad,
     }
-}
-
-/// The largest of some magnitudes; not a number where one of them is not, so that none passes for good unseen.
-fn largest(values: [f64; 3]) -> f64 {
-    values.into_iter().fold(0.0, |a, b| if a.is_nan() || a > b { a } else { b })
 }
 
 fn percent(value: f64) -> String {
@@ -141,7 +137,7 @@ fn mass_balance(outcome: &PointOutcome) -> Answer {
 
 fn jump_conditions(outcome: &PointOutcome) -> Answer {
     let residuals = outcome.residuals.map(|r| [r.mass, r.momentum, r.energy]);
-    let worst = residuals.map_or(f64::NAN, |r| largest(r.map(f64::abs)));
+    let worst = outcome.residuals.map_or(f64::NAN, |r| r.worst());
     let value = residuals.map_or("not measured".to_owned(), |r| {
         let [mass, momentum, energy] = r.map(|x| 100.0 * x);
         format!("mass {mass:.2} %, momentum {momentum:.2} %, energy {energy:.2} %")
@@ -158,7 +154,7 @@ fn jump_conditions(outcome: &PointOutcome) -> Answer {
 
 fn books(outcome: &PointOutcome) -> Answer {
     let gap = outcome.worst().map_or(outcome.ledger_residual, |w| {
-        largest([w.momentum_gap, w.energy_gap, outcome.ledger_residual])
+        larger(larger(w.momentum_gap, w.energy_gap), outcome.ledger_residual)
     });
     answer(
         judged(gap, BOOKS),
@@ -279,12 +275,6 @@ mod tests {
         assert_eq!(judged(0.02, MASS_BALANCE), Verdict::Caution);
         assert_eq!(judged(0.2, MASS_BALANCE), Verdict::Bad);
         assert_eq!(judged(f64::NAN, MASS_BALANCE), Verdict::Unknown);
-        assert_eq!(largest([0.1, 0.3, 0.2]), 0.3);
-        for k in 0..3 {
-            let mut values = [0.1, 0.3, 0.2];
-            values[k] = f64::NAN;
-            assert!(largest(values).is_nan(), "{values:?}");
-        }
     }
 
     #[test]
@@ -297,5 +287,21 @@ mod tests {
         assert_eq!(verdict(&case, &outcome), Verdict::Bad);
         assert!(checks[0].meaning.contains("fell to nothing"));
         assert_eq!(checks[2].verdict, Verdict::Unknown);
+    }
+
+    #[test]
+    fn books_with_a_gap_that_is_not_a_number_are_not_good() {
+        use crate::monitor::MonitorRow;
+        let of = |momentum_gap: f64, energy_gap: f64, ledger_residual: f64| {
+            let monitors = vec![MonitorRow { momentum_gap, energy_gap, ..MonitorRow::default() }];
+            let outcome = PointOutcome::failed(100.0, String::new());
+            books(&PointOutcome { monitors, ledger_residual, ..outcome }).check.verdict
+        };
+        assert_eq!(of(1e-15, 2e-15, 3e-15), Verdict::Good);
+        for (momentum, energy, all) in
+            [(f64::NAN, 1e-15, 1e-15), (1e-15, f64::NAN, 1e-15), (1e-15, 1e-15, f64::NAN)]
+        {
+            assert_eq!(of(momentum, energy, all), Verdict::Unknown);
+        }
     }
 }

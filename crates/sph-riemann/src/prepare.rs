@@ -139,7 +139,7 @@ impl<'a, D: SolidDimension, L: Lanes> EightStates<'a, D, L> {
         let inverse_density = L::one() / self.density;
         let speed = self.write_rows(eight, inverse_density, (pressure, modulus), rows);
         if prepared == Prepared::State {
-            self.write_rows_of_pass(eight, modulus, rows);
+            self.write_rows_of_pass(eight, (pressure, modulus), rows);
         }
         let numbers = self.numbers(inverse_density, pressure);
         let lines = prepared.lines::<D>();
@@ -174,15 +174,19 @@ impl<'a, D: SolidDimension, L: Lanes> EightStates<'a, D, L> {
 
     /// Rows that only the first pass reads.
     #[inline(always)]
-    fn write_rows_of_pass(&self, eight: &Eight<'_, L>, modulus: L, rows: &mut [Line]) {
+    fn write_rows_of_pass(&self, eight: &Eight<'_, L>, (pressure, modulus): (L, L), rows: &mut [Line]) {
         let (zero, half, shear) = (L::zero(), L::splat(0.5), eight.numbers.shear_modulus);
         let (mut free, mut evolves) = (L::one(), L::one());
         if self.constraint.iter().any(|&c| c != Constraint::Free) {
             free = lanes_where(self.constraint, |c| c == Constraint::Free);
             evolves = lanes_where(self.constraint, |c| c != Constraint::Frozen);
         }
-        let resists = half.select_less(eight.failed_lanes(), zero, shear);
-        half.select_less(evolves, modulus, zero).store(&mut rows[Row::BULK_MODULUS].0);
+        let failed = eight.failed_lanes();
+        let resists = half.select_less(failed, zero, shear);
+        // What has failed and is not pressed together opens or shuts without a change of pressure, which is zero.
+        let open = zero.select_less(pressure, zero, failed);
+        let stiff = half.select_less(open, zero, modulus);
+        half.select_less(evolves, stiff, zero).store(&mut rows[Row::BULK_MODULUS].0);
         half.select_less(evolves, resists, zero).store(&mut rows[Row::SHEAR_MODULUS].0);
         eight.numbers.yield_strength.store(&mut rows[Row::YIELD_STRENGTH].0);
         free.store(&mut rows[Row::FREE].0);

@@ -149,7 +149,7 @@ impl Row {
     pub const TRANSVERSE: usize = 3;
     /// Rows that a scheme without reconstruction uses; those that follow are for the first pass.
     pub const COUNT_WITHOUT_PASS: usize = 4;
-    /// ρ c_b² [Pa], zero where the state is frozen; up to the first pass.
+    /// ρ c_b² [Pa], zero where the state is frozen, or failed and not under pressure; up to the first pass.
     pub const BULK_MODULUS: usize = 4;
     /// Shear modulus G [Pa], zero where the state is frozen or the particle has failed; up to the first pass.
     pub const SHEAR_MODULUS: usize = 5;

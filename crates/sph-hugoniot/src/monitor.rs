@@ -134,6 +134,13 @@ impl Monitors {
         (self.cells, self.steps, self.since, self.shortest) = (cells, 0, window.time(), None);
     }
 
+    /// Goes on from an earlier state, at `swept` [m], that a search has come back to: what was seen since the last row was
+    /// of a trial, and belongs to no row.
+    pub fn take_back(&mut self, window: &Window<Dim2>, swept: f64, cell: f64) {
+        let cells = (swept / cell).floor() as i64;
+        (self.cells, self.steps, self.since, self.shortest) = (cells, 0, window.time(), None);
+    }
+
     fn row(&self, window: &Window<Dim2>, view: &FrontView) -> MonitorRow {
         let simulation = window.simulation();
         let particles = simulation.particles();

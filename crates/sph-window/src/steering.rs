@@ -93,12 +93,11 @@ impl<D: SolidDimension> Window<D> {
         Ok(Some(velocity))
     }
 
-    /// What was shocked on the way has left when as much has been swept since the front arrived; the box was fed half a
-    /// length in the meantime, so that as a rule this lies behind already.
+    /// What was behind the front when it came to its place leaves with u_out, while the front sweeps with u_in. The box is
+    /// fed half a length between two rounds, so that a part of it has left already.
     fn startup_end(&self, now: &Observation) -> f64 {
         let ratio = self.progress.frame.inlet_velocity() / self.progress.frame.outlet_velocity();
-        let arrival = self.settings.wanted_front() * (1.0 + ratio);
-        arrival.max(now.swept)
+        (self.progress.bisector.arrival() + self.settings.wanted_front() * ratio).max(now.swept)
     }
 
     fn take_snapshot(&self) -> Snapshot<D> {

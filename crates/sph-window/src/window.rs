@@ -37,7 +37,8 @@ const APPROACH_LIMIT: f64 = 20.0;
 pub struct WindowReport<D: SolidDimension> {
     /// The simulation's report.
     pub step: StepReport<D>,
-    /// The look at the front, after an exchange at the ends.
+    /// The look at the front, after an exchange at the ends; where a search takes its trial back, that of the state that it
+    /// has come back to.
     pub observation: Option<Observation>,
     /// The velocity that was added to everything along x, if any [m/s].
     pub boost: Option<f64>,
@@ -146,6 +147,8 @@ impl<D: SolidDimension> Window<D> {
             Some(observation) => self.steer(observation)?,
             None => None,
         };
+        // A trial that was taken back takes its last look with it.
+        let observation = observation.and(self.progress.observation);
         Ok(WindowReport { step, observation, boost })
     }
 

@@ -22,15 +22,28 @@ fn bisection_and_tracking_agree() {
     // search ends 2 to 6 % beside the front.
     let bisection = Bisection { tolerance: 4.0, samples: 8.0, ..Bisection::default() };
     let mut searched = window(porous(), settings(Search::Bisection(bisection)));
+    let mut arrival = None;
     while searched.is_searching() {
-        searched.step().unwrap();
+        let report = searched.step().unwrap();
+        if let Some(look) = report.observation {
+            assert_eq!(look.time, searched.time(), "a look at the state that the window is in");
+            arrival = arrival.or((searched.audit().len() == 1).then_some(look.swept));
+        }
     }
     assert!(searched.ledger_residual() < 1e-12, "restores and boosts are booked");
     let found = searched.frame().inlet_velocity();
     let spent = searched.simulation().particle_steps();
+    let frame = searched.frame();
+    let left = arrival.unwrap() + searched.settings().wanted_front() * found / frame.outlet_velocity();
     let in_trials: u64 = searched.audit().iter().map(|trial| trial.particle_steps).sum();
     assert!(in_trials <= spent && in_trials as f64 > 0.9 * spent as f64, "{in_trials} {spent}");
     assert!(searched.audit().iter().filter(|trial| trial.stage == Stage::Settle).count() == 1);
+    // Start-up ends when what was behind the front at its arrival has left.
+    while !searched.is_settled() {
+        searched.step().unwrap();
+    }
+    let settled = searched.fed_cells() * searched.sample().period() + searched.front_position().unwrap();
+    assert!((0.0..searched.sample().period()).contains(&(settled - left)), "{settled} {left}");
 
     let mut tracked = window(porous(), settings(Search::default()));
     while !(tracked.is_settled() && tracked.fed_cells() > 24.0) {

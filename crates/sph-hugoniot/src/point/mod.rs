@@ -214,6 +214,9 @@ impl<'c> Point<'c> {
     /// Takes a look at the front in; the status if the point has come to its end.
     fn look(&mut self, now: &Observation) -> Option<Status> {
         let before = self.progress.last_look.replace(*now).unwrap_or(*now);
+        if now.time < before.time {
+            self.progress.monitors.take_back(&self.window, now.swept, self.sample.cell);
+        }
         self.watch_precursor(now);
         self.smooth_front(now, &before);
         self.record(now.swept);

@@ -70,3 +70,33 @@ fn a_whole_outcome_stands_for_the_point_and_its_states_go() {
     assert_eq!(go_on(folder.path(), 1).unwrap().status, kept.status);
     assert!(states(folder.path()).is_empty());
 }
+
+/// Runs to its end.
+struct Never;
+
+impl Control for Never {
+    fn interrupted(&self) -> bool {
+        false
+    }
+    fn progress(&self, _way: &Way) {}
+}
+
+#[test]
+fn rows_of_a_search_hold_steps_of_one_trial_only() {
+    let search = "search: Bisection(samples: 2, rounds: 1, tolerance: \"60 m/s\"), points:";
+    let text = template::text("smoke")
+        .unwrap()
+        .replace("points:", search)
+        .replace("max_fed_cells: 12", "max_fed_cells: 8");
+    let case = config::parse(&text, "smoke.ron").unwrap();
+    let sample = microstructure::sample(&case);
+    let outcome = run_kept(&case, &sample, U_P, &Never, None).unwrap();
+    assert!(outcome.search.len() > 2, "{:?}", outcome.search);
+    let went_back = outcome.monitors.windows(2).filter(|rows| rows[1].time <= rows[0].time).count();
+    assert!(went_back > 1, "trials leave rows");
+    for row in &outcome.monitors {
+        // The mean of steps is as long as their shortest at least, and no step is ten times another here.
+        let ratio = row.time_step_mean / row.time_step_least;
+        assert!((1.0..10.0).contains(&ratio), "{ratio} at {} s", row.time);
+    }
+}

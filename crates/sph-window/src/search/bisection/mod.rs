@@ -147,6 +147,8 @@ pub struct Bisector {
     round: u32,
     moves: u32,
     bracket: (f64, f64),
+    /// Length that the front had swept when it came to its wanted place [m].
+    arrival: f64,
     /// u_s on the way of the front to its place [m/s].
     speed: f64,
     /// The bracket as it was at the start of the round.
@@ -166,6 +168,11 @@ impl Bisector {
     /// True once the front has been at its wanted place.
     pub fn arrived(&self) -> bool {
         self.phase != Phase::Approach
+    }
+
+    /// Length that the front had swept when it came to its wanted place; zero before [m].
+    pub(crate) fn arrival(&self) -> f64 {
+        self.arrival
     }
 
     /// True once the search has ended.
@@ -221,7 +228,7 @@ impl Bisector {
         self.book(look, around, Stage::Approach, None, Decision::Saved);
         let middle = speed - around.particle_velocity;
         let half = settings.half_width * speed;
-        self.speed = speed;
+        (self.speed, self.arrival) = (speed, look.now.swept);
         self.bracket = settings.bracket.unwrap_or(((middle - half).max(0.0), middle + half));
         Some(self.begin_round(look))
     }

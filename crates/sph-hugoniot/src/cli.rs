@@ -158,8 +158,8 @@ impl Changes {
 
     /// Tells which points no front can have in this case; true if there is one.
     fn are_refused(&self, case: &config::Case) -> bool {
-        let (material, porosity) = (&case.material, case.medium.porosity);
-        let refusals = self.up.iter().filter_map(|&u| crate::separation::refusal(material, porosity, u));
+        let (materials, porosity) = (case.materials(), case.medium.porosity);
+        let refusals = self.up.iter().filter_map(|&u| crate::separation::refusal(&materials, porosity, u));
         let refusals: Vec<String> =
             refusals.map(|(text, hint)| format!("error: {text}; hint: {hint}")).collect();
         if !refusals.is_empty() {

@@ -86,8 +86,14 @@ pub fn elastic_limit(material: &Material, porosity: f64) -> Option<(f64, f64)> {
     Some((stress, stress * porosity / (rho * speed)))
 }
 
-/// What is wrong with a u_p [m/s], if it is too slow or too fast for the medium: the message and a hint.
-pub fn refusal(material: &Material, porosity: f64, particle_velocity: f64) -> Option<(String, String)> {
+/// What is wrong with a u_p [m/s], if it is too slow or too fast for the medium: the message and a hint. In a medium of
+/// several solids it is, if it were in each of them alone; the words are those of the first.
+pub fn refusal(materials: &[Material], porosity: f64, particle_velocity: f64) -> Option<(String, String)> {
+    let of_each = materials.iter().map(|material| refusal_of_one(material, porosity, particle_velocity));
+    of_each.collect::<Option<Vec<_>>>()?.into_iter().next()
+}
+
+fn refusal_of_one(material: &Material, porosity: f64, particle_velocity: f64) -> Option<(String, String)> {
     if let Some((stress, slowest)) =
         elastic_limit(material, porosity).filter(|limit| particle_velocity < limit.1)
     {
@@ -120,16 +126,19 @@ const CLOSE: f64 = 0.6;
 /// Up to so many times u_e a front that is as fast as the precursor is the precursor.
 const ELASTIC: f64 = 4.0;
 
-/// What a run says about the separation, if it failed: both waves are one.
+/// What a run says about the separation, if it failed: both waves are one. In a medium of several solids the weakest sets
+/// σ_HEL, and the stiffest what the precursor is compared with where it was not read.
 pub fn finding(
-    material: &Material,
+    materials: &[Material],
     porosity: f64,
     particle_velocity: f64,
     shock_velocity: f64,
     precursor: Option<&observe::Precursor>,
 ) -> Option<String> {
-    let (stress, slowest) = elastic_limit(material, porosity)?;
-    let speed = precursor.map_or(CLOSE * fastest_precursor(material, porosity), |p| p.foot_speed);
+    let limits = materials.iter().filter_map(|material| elastic_limit(material, porosity));
+    let (stress, slowest) = limits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let fastest = materials.iter().map(|m| fastest_precursor(m, porosity)).fold(0.0, f64::max);
+    let speed = precursor.map_or(CLOSE * fastest, |p| p.foot_speed);
     if shock_velocity.is_nan() || shock_velocity < speed {
         return None;
     }
@@ -165,8 +174,8 @@ mod tests {
         let limit = limiting_particle_velocity(&copper(), 1.35).unwrap();
         println!("limit {limit} m/s");
         assert!((950.0..1150.0).contains(&limit), "{limit}");
-        assert!(refusal(&copper(), 1.35, 300.0).is_none());
-        let (message, hint) = refusal(&copper(), 1.35, 1500.0).unwrap();
+        assert!(refusal(&[copper()], 1.35, 300.0).is_none());
+        let (message, hint) = refusal(&[copper()], 1.35, 1500.0).unwrap();
         assert!(
             message.contains("overruns the elastic precursor, which runs at 3.5 km/s at most"),
             "{message}"
@@ -178,7 +187,7 @@ mod tests {
     fn below_the_elastic_limit_there_is_no_front() {
         let (stress, slowest) = elastic_limit(&copper(), 1.35).unwrap();
         assert!((stress / 0.2728e9 - 1.0).abs() < 1e-3 && (slowest - 11.7).abs() < 0.1, "{stress} {slowest}");
-        let (message, hint) = refusal(&copper(), 1.35, 8.0).unwrap();
+        let (message, hint) = refusal(&[copper()], 1.35, 8.0).unwrap();
         assert!(message.contains("no front separates") && message.contains("0.27 GPa"), "{message}");
         assert_eq!(hint, "at least 12 m/s for this medium (m = 1.350)");
         // σ_HEL = Y (K + 4G/3)/(2G) = 0.796 GPa of the solid, over ρ0 c_l.
@@ -188,11 +197,26 @@ mod tests {
 
     #[test]
     fn a_run_without_two_waves_says_which_one_is_left() {
-        let say = |u_p: f64, u_s: f64| finding(&copper(), 1.35, u_p, u_s, None);
+        let say = |u_p: f64, u_s: f64| finding(&[copper()], 1.35, u_p, u_s, None);
         assert_eq!(say(300.0, 1119.0), None);
         assert_eq!(say(50.0, f64::NAN), None);
         assert!(say(15.0, 2700.0).unwrap().starts_with("elastic: the front runs with 2700 m/s"));
         assert!(say(850.0, 3060.0).unwrap().starts_with("overdriven: "));
+    }
+
+    #[test]
+    fn in_a_medium_of_several_solids_all_must_refuse() {
+        let mut soft = copper();
+        soft.strength = Strength::PerfectPlastic { shear_modulus: 43e9, yield_strength: 0.05e9 };
+        let mut fluid = copper();
+        fluid.strength = Strength::Fluid;
+        let says = |materials: &[Material], u_p| refusal(materials, 1.35, u_p).map(|(message, _)| message);
+        assert!(says(&[copper(), soft.clone()], 8.0).is_none(), "pores in the softer one shut");
+        assert!(says(&[copper(), soft.clone()], 1.0).unwrap().contains("0.27 GPa"), "the words of the first");
+        assert!(says(&[copper(), fluid], 8.0).is_none());
+        let slow = |materials: &[Material]| finding(materials, 1.35, 15.0, 2700.0, None).unwrap();
+        assert!(slow(&[copper()]).starts_with("elastic: "));
+        assert!(slow(&[copper(), soft]).starts_with("overdriven: "), "u_e of the softer one is 2 m/s");
     }
 
     #[test]

@@ -55,8 +55,8 @@ pub fn resolve(schema: &CaseSchema, whole: &Span, folder: &Path, faults: &Faults
     if let (Some(window), Some(points), Some(stop)) = (&window, &points, &stop) {
         r.points_can_settle(schema, window, points, stop);
     }
-    if let (Some([material, ..]), Some(medium), Some(points)) = (materials.as_deref(), &medium, &points) {
-        r.fronts_separate(&schema.points, material, medium.porosity, points);
+    if let (Some(materials), Some(medium), Some(points)) = (materials.as_deref(), &medium, &points) {
+        r.fronts_separate(&schema.points, materials, medium.porosity, points);
     }
     let mut materials = materials?.into_iter();
     format?;

@@ -30,12 +30,12 @@ impl Resolver<'_> {
     pub(super) fn fronts_separate<T>(
         &self,
         field: &Field<T>,
-        material: &Material,
+        materials: &[Material],
         porosity: f64,
         points: &[f64],
     ) {
         for &u_p in points {
-            if let Some((message, hint)) = separation::refusal(material, porosity, u_p) {
+            if let Some((message, hint)) = separation::refusal(materials, porosity, u_p) {
                 self.refuse(field.span().unwrap_or(0..0), message, &hint);
             }
         }

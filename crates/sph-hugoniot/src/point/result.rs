@@ -92,7 +92,7 @@ impl Point<'_> {
         let case = self.case;
         let precursor = self.progress.precursor.found();
         let one_wave = separation::finding(
-            &case.material,
+            &case.materials(),
             case.medium.porosity,
             self.particle_velocity,
             harmonic_mean(&self.counted_cells()),

@@ -180,7 +180,8 @@ fn packing(outcome: &PointOutcome) -> Answer {
 
 fn two_waves(case: &Case, outcome: &PointOutcome) -> Answer {
     let (u_p, u_s) = (outcome.particle_velocity, outcome.shock_velocity);
-    let one = separation::finding(&case.material, case.medium.porosity, u_p, u_s, outcome.precursor.as_ref());
+    let precursor = outcome.precursor.as_ref();
+    let one = separation::finding(&case.materials(), case.medium.porosity, u_p, u_s, precursor);
     let (verdict, value) = match (one, &outcome.precursor, &outcome.states) {
         (Some(words), _, _) => (Verdict::Bad, words),
         (None, Some(p), Some(states)) => (

@@ -14,7 +14,7 @@ use crate::run::Earlier;
 ///
 /// Whoever changes what these hold (`PointOutcome`, `PointProgress`, `WindowState`, `Case`) raises it: a run then refuses to
 /// go on with a folder of another version, in place of reading one thing as another.
-pub const FOLDER_FORMAT: u64 = 3;
+pub const FOLDER_FORMAT: u64 = 4;
 
 /// The resolved case as a folder keeps it, with the version of its form and of the program.
 ///

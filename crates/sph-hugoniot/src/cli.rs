@@ -8,7 +8,7 @@ use std::time::Duration;
 use sph_io::console;
 
 pub use crate::arguments::{Arguments, Command};
-use crate::config::units::{LengthKind, show};
+use crate::config::units::{Length, LengthKind, show, significant};
 use crate::run::{self, Earlier, RunEnd, RunOptions};
 use crate::{check, config, shell, status, study, template};
 
@@ -173,9 +173,16 @@ impl Changes {
         let list = |name: &str, items: Vec<String>| {
             if items.is_empty() { String::new() } else { format!(" {name} {}", items.join(",")) }
         };
-        let sizes = self.resolutions.iter().map(|&d| show::<LengthKind>(d).replace(' ', "")).collect();
+        let sizes = self.resolutions.iter().map(|&d| same_size(d)).collect();
         list("--up", self.up.iter().map(f64::to_string).collect()) + &list("--resolutions", sizes)
     }
+}
+
+/// A particle size [m] as an argument that is read as the same number.
+fn same_size(size: f64) -> String {
+    let texts = [show::<LengthKind>(size).replace(' ', ""), format!("{}um", significant(size * 1e6))];
+    let same = |text: &String| Length::parse(text).is_ok_and(|read| read.si == size);
+    texts.into_iter().find(same).unwrap_or_else(|| format!("{size:e}m"))
 }
 
 /// The case of a text at each particle size of a study; `None` if one cannot be, which is told.
@@ -256,4 +263,17 @@ fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
 /// Cores of this machine.
 pub fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_to_go_on_with_are_read_as_the_same_numbers() {
+        for (size, text) in [(1e-6, "1um"), (5e-7, "0.5um"), (1e-6 / 1.3, "7.692307692307691e-7m")] {
+            assert_eq!(same_size(size), text);
+            assert_eq!(Length::parse(text).unwrap().si, size);
+        }
+    }
 }

@@ -6,6 +6,7 @@
 
 use serde::Serialize;
 use sph_materials::Strength;
+use sph_window::Search;
 
 use crate::config::Case;
 use crate::microstructure::Sample;
@@ -76,6 +77,8 @@ pub(crate) fn point(case: &Case, sample: &Sample, particle_velocity: f64) -> Poi
     let sound_speed = speeds.fold(0.0, f64::max);
     let step = case.scheme.courant * case.medium.particle_size / (sound_speed + particle_velocity);
     let (seconds, fed) = times(case, window_cells, u_s, particle_velocity);
+    let (in_trials, fed_between) = search(case, window_cells, u_s);
+    let (seconds, fed) = (seconds + in_trials, fed + fed_between);
     let steps = (seconds / step).ceil();
     PointEstimate {
         particle_velocity,
@@ -110,6 +113,19 @@ fn times(case: &Case, window_cells: usize, shock_velocity: f64, particle_velocit
         stop.startup_cells.map(|cells| (cells as f64 - fed_on_the_way).max(0.0) * cell / shock_velocity);
     let steady = wanted.unwrap_or(approach) + (stop.blocks * stop.block_cells) as f64 * cell / shock_velocity;
     (approach + steady, fed_on_the_way + steady * shock_velocity / cell)
+}
+
+/// Simulated time that the trials of a bisection and the way between its rounds take [s], and cells fed on that way; what
+/// trials feed is taken back.
+fn search(case: &Case, window_cells: usize, shock_velocity: f64) -> (f64, f64) {
+    let Search::Bisection(bisection) = case.search else { return (0.0, 0.0) };
+    let width =
+        bisection.bracket.map_or(2.0 * bisection.half_width * shock_velocity, |(low, high)| high - low);
+    let trials = (width / bisection.tolerance).log2().ceil().max(1.0);
+    let rounds = f64::from(bisection.rounds);
+    let between = (rounds - 1.0) * bisection.settle * window_cells as f64;
+    let cells = rounds * trials * bisection.samples + between;
+    (cells * case.medium.cell / shock_velocity, between)
 }
 
 /// What all points need on `threads` cores: (time [s], memory [bytes]).
@@ -148,6 +164,22 @@ mod tests {
             assert!((guess / published - 1.0).abs() < 0.1, "u_p = {u_p}: {guess} against {published}");
         }
         assert!(shock_velocity(&case(), 1.0, 100.0) > 4000.0);
+    }
+
+    #[test]
+    fn a_bisection_feeds_its_trials_beside() {
+        let tracked = case();
+        let sample = crate::microstructure::sample(&tracked);
+        let text =
+            include_str!("../templates/porous-copper.ron").replace("search: Tracking", "search: Bisection()");
+        let searched = config::parse(&text, "porous-copper.ron").unwrap();
+        let [without, with] = [&tracked, &searched].map(|case| point(case, &sample, 250.0));
+        // 2 · 0.2 · 963 m/s are halved nine times to 1 m/s, in two rounds, over three cells each; half a window between.
+        let cells = 54.0 + 0.5 * without.window_cells as f64;
+        let step = tracked.scheme.courant * 1e-6 / (4659.0 + 250.0);
+        let more = (with.steps - without.steps) * step * without.shock_velocity / 20e-6;
+        assert!((more / cells - 1.0).abs() < 0.02, "{more} {cells}");
+        assert_eq!(with.fed_cells, without.fed_cells + without.window_cells / 2);
     }
 
     #[test]

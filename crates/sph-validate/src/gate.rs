@@ -247,6 +247,34 @@ impl GateFile {
         Some((number, &self.known[number].cause))
     }
 
+    /// An entry that is meant for none of the `cases` of a suite, or for a resolution that none of them has: it would never
+    /// judge anything.
+    pub fn idle(&self, cases: &[Case]) -> Option<String> {
+        let printed =
+            self.figures.iter().chain(&self.reached).map(|f| (f.meant(), f.printed.keys().collect()));
+        let envelopes =
+            self.limits_by_resolution.iter().map(|e| (e.meant(), e.error_at_most.keys().collect()));
+        let known = self.known.iter().map(|miss| (miss.meant(), miss.reached.keys().collect()));
+        let any = self.limits.iter().map(Limit::meant).chain(self.orders.iter().map(Order::meant));
+        let mut entries = printed.chain(envelopes).chain(known).chain(any.map(|meant| (meant, Vec::new())));
+        entries.find_map(|(meant, resolutions): (Meant<'_>, Vec<&u32>)| {
+            let fitting: Vec<u32> =
+                cases.iter().filter(|case| meant.fits_case(case)).map(|case| case.n).collect();
+            let lacking = resolutions.into_iter().find(|n| !fitting.contains(n));
+            let whose = || {
+                let variant =
+                    meant.variant.map_or(String::new(), |variant| format!(", variant \"{variant}\""));
+                let scheme = meant.scheme.map_or(String::new(), |scheme| format!(", {scheme}"));
+                format!("`{}`{scheme}{variant}", meant.metric)
+            };
+            match lacking {
+                _ if fitting.is_empty() => Some(format!("{}: no run of the suite is meant", whose())),
+                Some(n) => Some(format!("{}: no run of the suite has n = {n}", whose())),
+                None => None,
+            }
+        })
+    }
+
     /// A figure that the file judges in runs like `case` and that is not among those `measured`: it would never be
     /// held against anything.
     pub fn unmeasured(&self, case: &Case, measured: &[&str]) -> Option<&str> {

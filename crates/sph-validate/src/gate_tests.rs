@@ -1,6 +1,7 @@
 //! Tests of the gates: which rows they hold, how printed numbers are read, what a known miss allows.
 
 use super::*;
+use crate::case::Tier;
 
 #[test]
 fn files_of_all_suites_are_good() {
@@ -99,4 +100,31 @@ fn known_miss_is_held_to_what_was_reached() {
     assert_eq!(cause(&Case { n: 20, ..case.clone() }, -0.1), None, "nothing is said of this resolution");
     assert_eq!(cause(&Case::new("test", SchemeName::TkcHancock, 10), -0.1), None);
     assert_eq!(file.unmeasured(&case, &[]), Some("m"), "a known miss of a figure that nobody measures");
+}
+
+#[test]
+fn entries_that_judge_nothing_are_told() {
+    let cases = [Case::new("test", SchemeName::Csph, 10), Case::new("test", SchemeName::Csph, 20)];
+    let idle = |entries: &str| {
+        GateFile::read("test", &format!("(source: \"a\", {entries})")).expect("a readable file").idle(&cases)
+    };
+    assert_eq!(idle("limits: [(scheme: Csph, metric: \"m\", error_at_most: 1)]"), None);
+    let told = idle("limits: [(variant: \"cooper\", metric: \"m\", error_at_most: 1)]");
+    assert_eq!(told.as_deref(), Some("`m`, variant \"cooper\": no run of the suite is meant"));
+    let told = idle("orders: [(scheme: TkcMuscl, metric: \"m\", at_least: 1)]");
+    assert_eq!(told.as_deref(), Some("`m`, tkc-muscl: no run of the suite is meant"));
+    let told = idle("limits_by_resolution: [(metric: \"m\", error_at_most: {10: 1, 15: 2})]");
+    assert_eq!(told.as_deref(), Some("`m`: no run of the suite has n = 15"));
+}
+
+#[test]
+fn every_entry_of_every_suite_judges_a_run() {
+    let mut told = Vec::new();
+    for suite in crate::suites::ALL {
+        let about = suite.about();
+        let file = GateFile::read(about.name, about.gates).expect("a readable file");
+        let cases = [Tier::Quick, Tier::Full].map(|tier| suite.cases(tier)).concat();
+        told.extend(file.idle(&cases).map(|entry| format!("{}: {entry}", about.name)));
+    }
+    assert!(told.is_empty(), "{told:#?}");
 }

@@ -127,11 +127,17 @@ impl Report {
     /// Judges what has ended; failed runs are kept as records.
     ///
     /// # Errors
-    /// If the gates of a suite cannot be read, or are meant for a figure that no run of it has.
+    /// If the gates of a suite cannot be read, or are meant for a run that it does not have or a figure that no run has.
     pub fn new(provenance: Provenance, tier: Tier, ended: &[Ended<'_>]) -> Result<Self, ValidateError> {
         let (mut suites, mut rows) = (Vec::new(), Vec::new());
-        for about in suites_of(ended).into_iter().map(|suite| suite.about()) {
+        for suite in suites_of(ended) {
+            let about = suite.about();
             let gates = GateFile::read(about.name, about.gates)?;
+            if let Some(reason) =
+                gates.idle(&[Tier::Quick, Tier::Full].map(|tier| suite.cases(tier)).concat())
+            {
+                return Err(ValidateError::Gates { suite: about.name.to_owned(), reason });
+            }
             let of_suite = ended.iter().filter(|ended| ended.job.case.suite == about.name);
             let outcomes: Vec<&Outcome> = of_suite.filter_map(|ended| ended.result.as_ref().ok()).collect();
             let first = rows.len();

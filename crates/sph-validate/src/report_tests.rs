@@ -31,7 +31,7 @@ impl Suite for Paper {
     }
 
     fn cases(&self, _: Tier) -> Vec<Case> {
-        Vec::new()
+        [100, 200, 400].map(|n| Case::new("paper", SchemeName::TkcHancock, n)).to_vec()
     }
 
     fn work(&self, _: &Case) -> f64 {

@@ -24,6 +24,20 @@ pub fn run(command: &mut Command) -> anyhow::Result<ExitCode> {
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
+/// Becomes another program, whose exit status is then this one's: a Ctrl-C is its own to answer, and the shell waits for it.
+#[cfg(unix)]
+pub fn hand_over(command: &mut Command) -> anyhow::Result<ExitCode> {
+    use std::os::unix::process::CommandExt;
+    let error = command.exec();
+    Err(error).with_context(|| format!("cannot start {}", command.get_program().display()))
+}
+
+/// As [`run`], where a process cannot become another.
+#[cfg(not(unix))]
+pub fn hand_over(command: &mut Command) -> anyhow::Result<ExitCode> {
+    run(command)
+}
+
 /// The packages of the workspace as cargo reads their manifests; `options` are those of `cargo metadata`.
 pub fn metadata(options: &[&str]) -> anyhow::Result<Value> {
     let output = cargo()
@@ -45,6 +59,12 @@ pub fn has_subcommand(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_program_that_cannot_be_become_is_named() {
+        let error = hand_over(&mut Command::new("no-such-program")).unwrap_err().to_string();
+        assert_eq!(error, "cannot start no-such-program");
+    }
 
     #[test]
     fn metadata_that_cargo_refuses_to_give_is_an_error_with_its_words() {

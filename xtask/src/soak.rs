@@ -26,5 +26,5 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     command.args(["test", "--quiet", "--package", "sph-hugoniot", "--test", "soak"]);
     command.args(["--", "--nocapture"]).current_dir(process::root());
     command.env("SOAK_KILLS", arguments.kills.to_string()).env("SOAK_SEED", arguments.seed.to_string());
-    process::run(&mut command)
+    process::hand_over(&mut command)
 }

@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if let Some(commit) = commit() {
         command.env("SPH_VALIDATE_COMMIT", commit);
     }
-    process::run(command.arg("--").args(&arguments.options))
+    process::hand_over(command.arg("--").args(&arguments.options))
 }
 
 /// The state of the repository for the report, where git knows it.

@@ -43,7 +43,7 @@ impl Suite for Collapse {
             name: "collapse",
             title: "Pore collapse",
             resolution: "particles along a cell",
-            reference: ReferenceKind::Analytic,
+            reference: ReferenceKind::Bounds,
             gates: include_str!("../../validation/collapse/gates.ron"),
         }
     }

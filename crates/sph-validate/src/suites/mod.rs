@@ -137,8 +137,8 @@ pub enum ReferenceKind {
     Analytic,
     /// Another program's solution, a converged mesh or a measurement: shares no code with the particle method.
     External,
-    /// The program's own finest run: shows convergence, not truth.
-    OwnFinest,
+    /// Bounds of what can be: shows sanity, not truth.
+    Bounds,
 }
 
 impl ReferenceKind {
@@ -147,7 +147,7 @@ impl ReferenceKind {
         match self {
             Self::Analytic => "exact",
             Self::External => "independent solution or measurement",
-            Self::OwnFinest => "own finest run",
+            Self::Bounds => "bounds",
         }
     }
 }

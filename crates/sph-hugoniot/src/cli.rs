@@ -156,10 +156,14 @@ impl Changes {
         }
     }
 
-    /// Tells which points no front can have in this case; true if there is one.
+    /// Tells which points cannot be in this case; true if there is one.
     fn are_refused(&self, case: &config::Case) -> bool {
         let (materials, porosity) = (case.materials(), case.medium.porosity);
-        let refusals = self.up.iter().filter_map(|&u| crate::separation::refusal(&materials, porosity, u));
+        let refusal = |&u_p: &f64| {
+            crate::separation::refusal(&materials, porosity, u_p)
+                .or_else(|| ends_before_it_settles(case, u_p))
+        };
+        let refusals = self.up.iter().filter_map(refusal);
         let refusals: Vec<String> =
             refusals.map(|(text, hint)| format!("error: {text}; hint: {hint}")).collect();
         if !refusals.is_empty() {
@@ -176,6 +180,18 @@ impl Changes {
         let sizes = self.resolutions.iter().map(|&d| same_size(d)).collect();
         list("--up", self.up.iter().map(f64::to_string).collect()) + &list("--resolutions", sizes)
     }
+}
+
+/// Message and hint where the cells that the case feeds at most do not suffice for a point of u_p [m/s]: slow fronts have
+/// longer windows.
+fn ends_before_it_settles(case: &config::Case, u_p: f64) -> Option<(String, String)> {
+    let (most, needed) = (case.stop.max_fed_cells, case.stop.least_fed_cells(case.window.cells_at(u_p)));
+    (most < needed).then(|| {
+        (
+            format!("u_p = {u_p} m/s: {most} cells end before the point can settle"),
+            format!("in the case file, stop: (max_fed_cells: {needed}) or more: start-up and the blocks that must agree"),
+        )
+    })
 }
 
 /// A particle size [m] as an argument that is read as the same number.
@@ -268,6 +284,21 @@ pub fn available_threads() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_point_that_cannot_settle_in_the_cells_of_the_file_is_told() {
+        let text = template::text("porous-copper").unwrap();
+        let text = text
+            .replace("max_fed_cells: 60", "max_fed_cells: 26")
+            .replace("\"50 m/s\", \"75 m/s\", \"100 m/s\", \"130 m/s\", ", "");
+        let case = config::parse(&text, "case.ron").unwrap();
+        assert_eq!(ends_before_it_settles(&case, 200.0), None);
+        let (message, hint) = ends_before_it_settles(&case, 50.0).unwrap();
+        assert_eq!(message, "u_p = 50 m/s: 26 cells end before the point can settle");
+        assert!(hint.contains("max_fed_cells: 32"), "{hint}");
+        let changes = |u_p| Changes { up: vec![u_p], ..Changes::default() };
+        assert!(changes(50.0).are_refused(&case) && !changes(200.0).are_refused(&case));
+    }
 
     #[test]
     fn sizes_to_go_on_with_are_read_as_the_same_numbers() {

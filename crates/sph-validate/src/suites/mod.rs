@@ -27,10 +27,10 @@
 //! scheme is the answer).
 //!
 //! Nothing in a suite decides whether a figure is good enough: that is in [`crate::gate`], from the table of the suite's
-//! folder. A gate of a figure that no run measures is an error. The drifts `mass_drift`, `momentum_drift`,
-//! `energy_drift` and `angular_momentum_drift` are figures of every run; the first three must have a gate in every
-//! suite. A suite draws no random number without a fixed seed: a run gives the same bits each time, on any number of
-//! threads.
+//! folder. A gate of a figure that no run measures, or meant for no run of the suite, is an error. The drifts `mass_drift`,
+//! `momentum_drift`, `energy_drift` and `angular_momentum_drift` are figures of every run; the first three must have a gate
+//! in every suite. A suite draws no random number without a fixed seed: a run gives the same bits each time, on any number
+//! of threads.
 
 mod acoustic;
 mod collapse;
